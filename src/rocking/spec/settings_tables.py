@@ -28,7 +28,7 @@ class SettingsTable(JobTable):
 
 
 class StudySettingsTable(SettingsTable):
-    """Settings of the integration and of the contact in studies. The table [response] has its own contact keys."""
+    """Settings of the integration, and of the contact in studies; the table of a response has its own contact keys."""
 
     friction: float | None = key("coefficient of friction; enables sliding [-]", None, ge=0.0)
     normal_restitution: float | None = key("with friction: coefficient of normal restitution [-]", None, ge=0.0)

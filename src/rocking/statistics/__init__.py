@@ -1,4 +1,4 @@
-"""Statistics of failures and survivals at levels: counts, likelihoods, curves, intervals; independent of rocking."""
+"""Statistics of failures and survivals at levels: counts, likelihoods, curves, intervals. Independent of rocking."""
 
 from lazy_loader import attach_stub
 

@@ -1,4 +1,4 @@
-"""Bootstrap: simulated repetitions of a study with their fits."""
+"""Bootstrap: simulated repetitions of a study, with fits."""
 
 import math
 from collections.abc import Callable
@@ -27,18 +27,28 @@ Resampling = Literal["parametric", "cases", "clusters"]
 Ends = Literal["studentised", "percentile", "basic"]
 Pair = tuple[FloatArray, FloatArray]
 
-OUTWARD = 6  # number of steps to a value outside the interval, each twice as long; an end beyond them is open
+OUTWARD = (
+    6  # number of steps to a value outside the interval; every step is twice as long as the last; ends beyond are open
+)
 
 NEAR = 0.05
-"""Tolerance of an end over the first step of its search."""
+"""Tolerance of an end, relative to the first step of its search."""
 
-NODES = (-3.0, -1.5, -0.7, 0.0, 0.7, 1.5, 3.0)  # variates of the fractiles that bound a band; interpolated between them
+NODES = (
+    -3.0,
+    -1.5,
+    -0.7,
+    0.0,
+    0.7,
+    1.5,
+    3.0,
+)  # variates of the fractiles that bound a band; ends between these variates are interpolated
 
 
 def resample(
     counts: Counts, probability: FloatArray, kind: Resampling, repetitions: int, seed: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Return failures and trials of resampled data sets, one row per data set, one column per level."""
+    """Return failures and trials of resampled data sets, with one row per data set and one column per level."""
     checks.within("repetitions", repetitions, 1, 10**7)
     random = np.random.default_rng(seed)
     if kind == "parametric":
@@ -68,7 +78,7 @@ def resample(
 
 
 def _sampled_clusters(counts: Counts, repetitions: int, seed: int) -> FloatArray:
-    """Return the number of samples of each distinct cluster, one row per repetition."""
+    """Return the numbers of samples of the distinct clusters, one row per repetition."""
     weights = counts.distinct_clusters[1]
     random, total = np.random.default_rng(seed), weights.sum()
     return random.multinomial(round(total), weights / total, size=repetitions).astype(np.float64)  # Eq. 209
@@ -78,12 +88,12 @@ def _sampled_clusters(counts: Counts, repetitions: int, seed: int) -> FloatArray
 class BootstrapSample:
     """Curves of repeated studies, with the curve of the study.
 
-    Repetitions with a step are fitted by the penalised likelihood. Repetitions without a rising curve lie beyond both
-    ends of every interval, so that they widen it.
+    Repetitions with a step are fitted by the penalised likelihood. Repetitions without a rising curve are beyond both
+    ends of every interval, so that they widen the interval.
     """
 
     curves: FittedCurves  # the curves of the repetitions
-    original: FittedCurves  # the curve of the study: one row
+    original: FittedCurves  # the curve of the study (one row)
     scale: LogScale  # scale of the coefficients
     kind: Resampling  # kind of resampling
     ends = "studentised"
@@ -105,8 +115,8 @@ class BootstrapSample:
 
     def log_interval(self, variate: float | None, level: float, ends: Ends = "studentised") -> tuple[float, float]:
         """Return both ends of the interval of `log_quantity`."""
-        # from the distances of the repetitions in standard errors (second-order accurate), their percentiles, or
-        # mirrored; infinite if open
+        # by the distances of the repetitions in standard errors (second-order accurate), by percentiles, or by
+        # mirrored percentiles; infinite for open ends
         of_study, of_repetitions = (
             (
                 log_quantity(curves.theta, self.scale, variate)[:, None],
@@ -132,7 +142,7 @@ class BootstrapSample:
         return self._ends(of_study, of_repetitions, level, ends)
 
     def _ends(self, of_study: Pair, of_repetitions: Pair, level: float, ends: Ends) -> Pair:
-        """Return both ends by column, from values and errors of the study and of the repetitions."""
+        """Return both ends by column, from values and errors of study and repetitions."""
         kind = checks.one_of("ends", ends, get_args(Ends))
         distance = of_repetitions[0] if kind == "percentile" else of_repetitions[0] - of_study[0]
         distance = distance / of_repetitions[1] if kind == "studentised" else distance  # Eq. 210
@@ -148,7 +158,7 @@ class BootstrapSample:
 def bootstrap(
     counts: Counts, original: FittedCurves, scale: LogScale, kind: Resampling, repetitions: int, seed: int
 ) -> BootstrapSample:
-    """Repeat a study many times and fit every repetition like the study."""
+    """Repeat a study many times, and fit every repetition in the same way as the study."""
     probability = curve_probability(original, scale, counts.levels)
     failures, trials = resample(counts, probability, kind, repetitions, seed)
     curves = find_curves(counts.levels, scale, failures, trials, penalised=bool(original.penalised[0]))
@@ -176,7 +186,7 @@ class CapacitySample:
     """Studies repeated with sampled lognormal capacities, one per record."""
 
     levels: FloatArray  # levels of every record
-    original: FittedCurves  # the curve of the study: one row
+    original: FittedCurves  # the curve of the study (one row)
     scale: LogScale  # scale of its coefficients
     variates: FloatArray  # standard normal variates of the capacities, one row per repetition
     kind = "capacities"
@@ -196,7 +206,7 @@ class CapacitySample:
 
     def rarity(self, variate: float | None, value: float) -> float:
         """Return the fraction of repetitions with a smaller estimate, for a value of a logarithmic parameter."""
-        # the other parameter is then the maximum-likelihood one of known capacities, with n - 1 for n records; half of
+        # the other parameter is the maximum-likelihood value for known capacities, with n - 1 for n records; half of
         # the repetitions with an equal estimate count
         median, log_dispersion = self._log_curve
         if variate is None:
@@ -215,7 +225,7 @@ class CapacitySample:
         """Return both ends of the interval of `log_quantity`."""
         (median, log_dispersion), records = self._log_curve, self.variates.shape[1]
         start = log_dispersion if variate is None else median + variate * math.exp(log_dispersion)
-        # approximate ends: those of known capacities, slightly wider
+        # approximate ends are slightly wider than the ends for known capacities
         error = (
             math.sqrt(0.5) if variate is None else math.exp(log_dispersion) * math.hypot(1.0, math.sqrt(0.5) * variate)
         )
@@ -228,12 +238,12 @@ class CapacitySample:
         """Return pointwise ends of the variate a + b u of the probability, from the ends of fractiles."""
         ends = np.array([self.log_interval(variate, level) for variate in NODES])
         at = self.scale.log_level(position)
-        # a level is the upper end of the fractile of its smallest probability
+        # a level is the upper end of the fractile with the smallest probability of the level
         low, high = _along(at, ends[:, 1]), _along(at, ends[:, 0])
         return np.where(np.isnan(low), -np.inf, low), np.where(np.isnan(high), np.inf, high)
 
     def _repeated(self, median: float, dispersion: float) -> FloatArray:
-        """Return a and b of the repeated studies for a logarithmic median and a dispersion of the capacities."""
+        """Return a and b of the repeated studies, for a logarithmic median and a dispersion of the capacities."""
         failures = np.count_nonzero(dispersion * self.variates[:, :, None] < np.log(self.levels) - median, axis=1)
         rows, inverse = np.unique(failures, axis=0, return_inverse=True)
         keys = [row.tobytes() for row in rows]
@@ -244,13 +254,13 @@ class CapacitySample:
 
     @cached_property
     def _curves(self) -> dict[bytes, FloatArray]:
-        """Curves by the failures at each level, which repeat often for few records."""
+        """Curves by the failures at all levels. For few records, equal failures occur often."""
         return {}
 
     def _fitted(self, rows: IntArray) -> FloatArray:
         failures, trials = rows.astype(np.float64), np.full(rows.shape, float(self.variates.shape[1]))
         curves = find_curves(self.levels, self.scale, failures, trials, penalised=bool(self.original.penalised[0]))
-        # equal failures at all levels: a curve that does not rise
+        # with equal failures at all levels, the curve does not rise
         flat = np.stack([ndtri(np.mean(failures / trials, axis=1)), np.zeros(len(rows))], axis=1)
         return np.asarray(np.where(curves.exists[:, None], curves.theta, flat))
 
@@ -273,8 +283,8 @@ def _below(estimates: FloatArray, original: float) -> float:
 
 
 def _end(rarity: Callable[[float], float], start: float, step: float, tail: float) -> float:
-    """Return the value at which a fraction decreasing from 0.5 reaches a tail probability; infinite if never."""
-    # variates of such fractions are nearly linear; they are limited below, and steps to between 0.1 and 0.9
+    """Return the value at which a fraction that decreases from 0.5 reaches a tail probability, or infinity."""
+    # variates of such fractions are nearly linear; variates have a lower limit, and steps are limited to 0.1 to 0.9
     lowest, goal = ndtri(np.array([0.05 * tail, tail])).tolist()
     inside, above, near = start, 0.0, NEAR * abs(step)
     for _ in range(OUTWARD):
@@ -297,7 +307,7 @@ def _end(rarity: Callable[[float], float], start: float, step: float, tail: floa
 
 
 def _along(at: FloatArray, ends: FloatArray) -> FloatArray:
-    """Return variates by linear interpolation between the nodes, and extrapolation unless they are open."""
+    """Return variates by linear interpolation between the nodes, and by extrapolation if the ends are not open."""
     closed = np.isfinite(ends)
     if closed.sum() < 2:
         return np.full(at.shape, np.nan)

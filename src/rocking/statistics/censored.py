@@ -1,4 +1,4 @@
-"""Lognormal distribution of levels, some of which are censored: only a lower bound is known."""
+"""Lognormal distribution of levels. Some levels may be censored, with a known lower bound only."""
 
 import math
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ class CensoredFit:
     method: str  # method of the fit, as text
 
     def probability(self, level: Any) -> FloatArray:
-        """Return the probability of levels below a level > 0 [unit of the levels]; a step for zero dispersion [-]."""
+        """Return the probability of levels below a level > 0 [-]. For zero dispersion, this is a step."""
         logs = np.log(checks.positive_array("level", level)) - math.log(self.median)
         return np.asarray(ndtr(logs / self.dispersion)) if self.dispersion else np.asarray(1.0 * (logs >= 0.0))
 
@@ -46,9 +46,9 @@ def fit_moments(levels: FloatArray) -> CensoredFit:
 
 
 def fit_censored(levels: FloatArray, censored: BoolArray) -> CensoredFit:
-    """Return the maximum-likelihood lognormal fit to levels, some with only a lower bound."""
-    # the likelihood is concave in 1 / sigma and mu / sigma (Olsen 1978, Econometrica 46:1211): zero gradient proves the
-    # maximum, which is verified
+    """Return the maximum-likelihood lognormal fit to levels, some of which are lower bounds."""
+    # the likelihood is concave in 1 / sigma and mu / sigma (Olsen 1978, Econometrica 46:1211); zero gradient proves the
+    # maximum, and is verified
     logs = np.log(checks.positive_array("levels", levels))
     exact, bounds = logs[~censored], logs[censored]
     if exact.size < 2:
@@ -66,19 +66,20 @@ def fit_censored(levels: FloatArray, censored: BoolArray) -> CensoredFit:
 
 
 def fit_crossings(crossings: FloatArray, highest: float) -> CensoredFit | None:
-    """Return the lognormal distribution of crossings; infinite ones lie above the highest level.
+    """Return the lognormal distribution of crossings. Infinite crossings are above the highest level.
 
     Parameters
     ----------
     crossings : ndarray
-        Levels, infinite if above the highest level [any unit].
+        Levels of the crossings [any unit]; infinite if above the highest level.
     highest : float
         Highest computed level [unit of the crossings].
 
     Returns
     -------
     CensoredFit or None
-        Fit by moments if all are finite, else by maximum likelihood; None if the dispersion is undetermined.
+        Fit by moments if all crossings are finite, otherwise by maximum likelihood; None if the dispersion is
+        undetermined.
     """
     crossed = np.isfinite(crossings)
     if crossed.sum() < 2:
@@ -92,7 +93,7 @@ def fit_crossings(crossings: FloatArray, highest: float) -> CensoredFit | None:
 
 
 def _maximum(exact: FloatArray, bounds: FloatArray) -> tuple[float, float]:
-    """Return h = 1 / sigma and d = mu / sigma by Newton's method with halved steps."""
+    """Return h = 1 / sigma and d = mu / sigma by Newton's method with step halving."""
     at = np.array([1.0, float(exact.mean())])
     value = _likelihood(at, exact, bounds)
     for _ in range(_ROUNDS):
@@ -126,7 +127,7 @@ def _likelihood(at: FloatArray, exact: FloatArray, bounds: FloatArray) -> float:
 def _slopes(at: FloatArray, exact: FloatArray, bounds: FloatArray) -> tuple[FloatArray, FloatArray]:
     h, d = at
     z, w = h * exact - d, d - h * bounds
-    # the hazard phi / Phi, without overflow in the tail
+    # hazard phi / Phi, without overflow in the tail
     hazard = np.exp(-0.5 * w * w - _LOG_OF_ROOT - log_ndtr(w))
     bend = hazard * (w + hazard)
     gradient = np.array([exact.size / h - z @ exact - hazard @ bounds, z.sum() + hazard.sum()])  # Eq. 215

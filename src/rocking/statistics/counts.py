@@ -14,10 +14,10 @@ from rocking.errors import InvalidValueError
 from rocking.messages import Range
 
 NARROWEST = 1e-9  # smallest relative distance between the lowest and the highest level [-]
-MIN_CLUSTERS = 5  # smallest number of distinct clusters for resampling
+MIN_CLUSTERS = 5  # minimum number of distinct clusters for resampling
 
 MANY_CLUSTERS = 30
-"""Number of clusters above which resampled intervals have their nominal coverage."""
+"""With more clusters, resampled intervals have their nominal coverage."""
 
 _ROWS_AT_ONCE = 1 << 15
 
@@ -27,16 +27,16 @@ class Counts:
     """Failures and trials at ascending levels, from `count_outcomes`."""
 
     levels: FloatArray  # distinct levels of the intensity measure, ascending [any unit]
-    failures: FloatArray  # failures, trials: numbers of failures and of trials at each level [-]
+    failures: FloatArray  # failures, trials: numbers of failures and trials at every level [-]
     trials: FloatArray
     # cluster_failures, cluster_trials: failures and trials by cluster (row) and level (column) [-]
     cluster_failures: FloatArray | None = None
     cluster_trials: FloatArray | None = None
-    cluster_weights: FloatArray | None = None  # number of clusters of each row; default 1 [-]
+    cluster_weights: FloatArray | None = None  # number of clusters per row [-]; default 1
 
     @property
     def survivals(self) -> FloatArray:
-        """Number of survivals at each level [-]."""
+        """Number of survivals at every level [-]."""
         return self.trials - self.failures
 
     @property
@@ -58,19 +58,19 @@ class Counts:
 
     @cached_property
     def tries_all_levels(self) -> bool:
-        """True if each cluster has one trial at every level, such as records scaled to all levels."""
+        """True if every cluster has one trial at every level, such as records scaled to all levels."""
         if self.cluster_trials is None or self.clusters < 2 or self.levels.size < 2:
             return False
         return bool((self.cluster_trials == 1.0).all())
 
     @property
     def draws_capacities(self) -> bool:
-        """True for few clusters with one trial at every level each."""
+        """True for few clusters, all with one trial at every level."""
         return MIN_CLUSTERS <= self.clusters < MANY_CLUSTERS and self.tries_all_levels
 
     @cached_property
     def distinct_clusters(self) -> tuple[FloatArray, FloatArray]:
-        """Distinct rows of failures and trials by level, and the number of clusters of each row [-]."""
+        """Distinct rows of failures and trials by level, and the number of clusters per row [-]."""
         if self.cluster_failures is None or self.cluster_trials is None:
             return np.empty((0, 2 * self.levels.size)), np.empty(0)
         table = np.hstack([self.cluster_failures, self.cluster_trials])
@@ -79,11 +79,11 @@ class Counts:
 
     @property
     def scarcity(self) -> str:
-        """Reason why there are too few clusters for resampling; empty for enough clusters.
+        """Reason why there are too few clusters for resampling; empty if there are enough.
 
-        Five records with a trial at every level are enough, since their capacities are sampled from the curve.
-        Otherwise five clusters with distinct outcomes are needed. With fewer than four levels the number of distinct
-        increasing outcomes is limited to the number of levels plus one.
+        Five records with a trial at every level are enough, because their capacities are sampled from the curve.
+        Otherwise, five clusters with distinct outcomes are needed. For fewer than four levels, the number of distinct
+        increasing outcomes is at most the number of levels plus one.
         """
         if self.draws_capacities:
             return ""
@@ -101,9 +101,9 @@ class StateCounts:
     """Three states at ascending levels, from `count_states`."""
 
     levels: FloatArray  # distinct levels of the intensity measure, ascending [any unit]
-    rocked: FloatArray  # number of trials that rocked (to the chosen level) or overturned, at each level [-]
-    overturned: FloatArray  # number of trials that overturned, at each level [-]
-    trials: FloatArray  # all trials at each level [-]
+    rocked: FloatArray  # number of trials that rocked (to the chosen level) or overturned, at every level [-]
+    overturned: FloatArray  # number of trials that overturned, at every level [-]
+    trials: FloatArray  # number of all trials at every level [-]
 
 
 def count_outcomes(
@@ -114,13 +114,13 @@ def count_outcomes(
     Parameters
     ----------
     levels : array_like
-        Level of the intensity measure of each entry, in any order, > 0 [any unit].
+        Levels of the intensity measure, one per entry, in any order, > 0 [any unit].
     failures : array_like
-        Number of failures of each entry; 0 or 1, or booleans, without `trials` [-].
+        Number of failures per entry [-]. Without `trials`: 0 or 1, or booleans.
     trials : array_like, optional
-        Number of trials of each entry, at least 1; default 1 [-].
+        Number of trials per entry, at least 1 [-]. The default is 1.
     clusters : iterable, optional
-        Name of the cluster of each entry, such as its record: outcomes of one cluster are not independent.
+        Name of the cluster of every entry, such as its record. Outcomes of one cluster are not independent.
 
     Returns
     -------
@@ -130,7 +130,7 @@ def count_outcomes(
     Raises
     ------
     InvalidValueError
-        If a level is not a finite number > 0, a count is no integer, or failures exceed trials.
+        If a level is not a finite number > 0, if a count is not an integer, or if failures exceed trials.
 
     Examples
     --------
@@ -166,13 +166,13 @@ def count_states(levels: Any, rocked: Any, overturned: Any, trials: Any = None) 
     Parameters
     ----------
     levels : array_like
-        Level of the intensity measure of each entry, in any order, > 0 [any unit].
+        Levels of the intensity measure, one per entry, in any order, > 0 [any unit].
     rocked : array_like
-        Number of trials of each entry that rocked to the chosen level or further, including overturned ones [-].
+        Number of trials per entry that rocked to the chosen level or further, including overturned trials [-].
     overturned : array_like
-        Number of trials of each entry that overturned [-].
+        Number of trials per entry that overturned [-].
     trials : array_like, optional
-        Number of trials of each entry, at least 1; default 1 [-].
+        Number of trials per entry, at least 1 [-]. The default is 1.
 
     Returns
     -------
@@ -182,7 +182,7 @@ def count_states(levels: Any, rocked: Any, overturned: Any, trials: Any = None) 
     Raises
     ------
     InvalidValueError
-        If a count is invalid, or more trials overturned than rocked.
+        If a count is invalid, or if more trials overturned than rocked.
 
     Examples
     --------
@@ -239,7 +239,7 @@ def _none_above(name: str, count: FloatArray, total: FloatArray, of: str = "tria
 
 
 def check_spread(levels: FloatArray) -> None:
-    """Refuse ascending levels with differences of rounding only."""
+    """Raise an error if ascending levels differ only by rounding."""
     if levels.size > 1 and levels[-1] <= levels[0] * (1.0 + NARROWEST):
         raise InvalidValueError(
             "the relative range of {parameter} must exceed {smallest:g}, got {low:.17g} to {high:.17g}",
@@ -249,11 +249,11 @@ def check_spread(levels: FloatArray) -> None:
 
 
 def pooled(levels: FloatArray, good: BoolArray, reached: Sequence[BoolArray], cluster: IntArray) -> list[Counts]:
-    """Return the counts of several states of common histories, equal to `count_outcomes` of each."""
-    # motions (first axis) with equal levels and outcomes are one row with a weight, so that ten million histories need
-    # little memory; by cluster if a cluster has more than one history
+    """Return the counts of several states of common histories. They are equal to `count_outcomes` of every state."""
+    # motions (first axis) with equal levels and outcomes become one row with a weight, so that ten million histories
+    # need little memory; if a cluster has more than one history, rows are made by cluster
     size = np.bincount(cluster, good.reshape(cluster.size, -1).sum(axis=1))
-    if good.any() and size.max() <= 1.0:  # independent: common levels and trials of all states
+    if good.any() and size.max() <= 1.0:  # independent trials: all states have common levels and trials
         distinct, index = np.unique(levels[good], return_inverse=True)
         check_spread(distinct)
         trials, *failures = (
@@ -282,7 +282,7 @@ def _grid(levels: FloatArray, good: BoolArray, failed: BoolArray, cluster: IntAr
 
 
 def _distinct(failed: BoolArray, good: BoolArray, motions: IntArray) -> tuple[FloatArray, FloatArray]:
-    """Return the distinct rows of failures and trials of motions, and the number of motions of each row."""
+    """Return the distinct rows of failures and trials of motions, and the number of motions per row."""
     width = failed.shape[1]
     distinct, weights = np.empty((0, (2 * width + 7) // 8), np.uint8), np.empty(0, np.float64)
     for first in range(0, motions.size, _ROWS_AT_ONCE):
@@ -304,14 +304,14 @@ def _summed(failed: BoolArray, good: BoolArray, cluster: IntArray, motions: IntA
 def share_interval(hits: float, trials: float, level: float = 0.95) -> tuple[float, float]:
     """Return the exact binomial interval of a fraction (Clopper & Pearson 1934).
 
-    Its coverage is at least its level, for any number of trials, also a non-integer one.
+    The coverage is at least the level, for any number of trials. The number of trials may be a non-integer.
 
     Parameters
     ----------
     hits, trials : float
         Number of hits and number of trials [-].
     level : float
-        Confidence, equal tails [-].
+        Confidence level with equal tails [-].
 
     Returns
     -------
@@ -321,7 +321,7 @@ def share_interval(hits: float, trials: float, level: float = 0.95) -> tuple[flo
     Raises
     ------
     InvalidValueError
-        If there are no trials or more hits than trials.
+        If there are no trials, or more hits than trials.
 
     Examples
     --------

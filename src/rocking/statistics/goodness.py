@@ -26,41 +26,41 @@ STATISTICS = {
 }
 """Statistics of the goodness of fit, with descriptions."""
 
-REPETITIONS, FEWEST = 1000, 99  # number of data sets simulated for p-values, and the smallest number
-MOST_DRAWN = 2_000_000  # largest number of levels times data sets for default p-values: seconds of work
-MOST_REPEATED = 50_000_000  # largest number of levels times data sets of a bootstrap in memory: about 1 GB
+REPETITIONS, FEWEST = 1000, 99  # number of data sets simulated for p-values, and smallest allowed number
+MOST_DRAWN = 2_000_000  # largest number of levels times data sets for default p-values, which takes seconds
+MOST_REPEATED = 50_000_000  # largest number of levels times data sets of a bootstrap in memory, about 1 GB
 _NONE = (math.nan, math.nan)
 
 
 class Statistic(NamedTuple):
     """A measure of disagreement."""
 
-    value: float  # the measure; zero for perfect agreement [-]
-    # fraction of refitted simulated data sets with at least this disagreement: small for a wrong curve [-]
+    value: float  # value of the measure [-]; zero for perfect agreement
+    # fraction of refitted simulated data sets with at least this disagreement [-]; small for a wrong curve
     p_value: float
 
 
 @dataclass(frozen=True, eq=False)
 class Goodness:
-    """Agreement of a curve with the outcomes it was fitted to."""
+    """Agreement of a curve with the outcomes to which the curve was fitted."""
 
-    # twice the difference in log likelihood from a curve free at every level; weak with few trials per level
+    # twice the difference in log likelihood to a curve that is free at every level; weak for few trials per level
     deviance: Statistic
-    pearson: Statistic  # sum over levels of squared differences over variances
-    hosmer_lemeshow: Statistic  # as pearson, over groups of neighbouring levels, for single observations
+    pearson: Statistic  # sum over levels of squared differences divided by variances
+    hosmer_lemeshow: Statistic  # as pearson, but over groups of neighbouring levels, for single observations
     kolmogorov: Statistic  # largest distance between the fraction of failures in a group and the curve
-    lower: FloatArray  # lower, upper: lowest and highest level of each group [unit of the levels]
+    lower: FloatArray  # lower, upper: lowest and highest levels of the groups [unit of the levels]
     upper: FloatArray
-    trials: FloatArray  # trials, observed, expected: trials, failures, and failures by the curve in each group [-]
+    trials: FloatArray  # trials, observed, expected: trials, failures, and failures by the curve, per group [-]
     observed: FloatArray
     expected: FloatArray
-    # 95 % band of the fraction of failures in each group, by the curve [-]
+    # 95 % band of the fraction of failures per group, by the curve [-]
     band: tuple[FloatArray, FloatArray]
     distance_limit: float  # 95 % quantile of the largest distance in simulated data sets [-]
     repetitions: int  # number of refitted data sets
 
     def summary(self) -> dict[str, Any]:
-        """Return value and p-value of each statistic [-]."""
+        """Return values and p-values of all statistics [-]."""
         return {name: getattr(self, name)._asdict() for name in STATISTICS}
 
 
@@ -87,7 +87,7 @@ def goodness_of(
     member = group_of(counts.trials, groups)
     simulated = _statistics(failures, trials, ndtr(theta[:, :1] + theta[:, 1:] * position), member)
     actual = _statistics(counts.failures[None], counts.trials[None], own, member)
-    # discrete statistics are equal up to rounding
+    # discrete statistics may be equal except for rounding
     beyond = [int(np.sum(s >= f[0] * (1.0 - 1e-9))) for s, f in zip(simulated, actual, strict=True)]
     tests = [
         Statistic(float(f[0]), (1 + n) / (1 + fitted.size)) for f, n in zip(actual, beyond, strict=True)
@@ -105,7 +105,7 @@ def goodness_of(
 
 
 def group_of(trials: FloatArray, groups: int) -> IntArray:
-    """Return the group index of each level: neighbouring levels with about equal numbers of trials."""
+    """Return the group index of every level. Groups are neighbouring levels with about equal numbers of trials."""
     if trials.size <= groups:
         return np.arange(trials.size)
     middle = (np.cumsum(trials) - 0.5 * trials) / trials.sum()
@@ -113,7 +113,7 @@ def group_of(trials: FloatArray, groups: int) -> IntArray:
 
 
 def _statistics(z: FloatArray, n: FloatArray, p: FloatArray, member: IntArray) -> tuple[FloatArray, ...]:
-    """Return deviance, Pearson's, Hosmer and Lemeshow's and Kolmogorov's statistics, one row per data set."""
+    """Return the statistics of deviance, Pearson, Hosmer and Lemeshow, and Kolmogorov, one row per data set."""
     p = np.clip(p, 1e-300, 1.0 - 1e-16)
     deviance = 2.0 * np.sum(xlogy(z, z / (n * p)) + xlogy(n - z, (n - z) / (n * (1.0 - p))), axis=1)  # Eq. 223
     pearson = np.sum((z - n * p) ** 2 / (n * p * (1.0 - p)), axis=1)  # Eq. 224
@@ -136,17 +136,17 @@ class Agreement:
 class Repeated:
     """Intervals of a curve from the bootstrap."""
 
-    # median_95, dispersion_95: ends of the 95 % intervals, None for an open end; None without an interval [units of
+    # median_95, dispersion_95: ends of the 95 % intervals; None for an open end or a missing interval [units of
     # median and dispersion]
     median_95: Ends | None = None
     dispersion_95: Ends | None = None
     # lower and upper ends of the 95 % intervals of the probability at the levels, or None [-]
     band: tuple[FloatArray, FloatArray] | None = None
-    basis: str = ""  # kind of the bootstrap, or reason of a missing one
+    basis: str = ""  # kind of the bootstrap, or reason for a missing bootstrap
 
 
 def ends_of(interval: Ends | None) -> tuple[float, float]:
-    """Return an interval as numbers: NaN for an open end or a missing interval.
+    """Return an interval as numbers. NaN means an open end or a missing interval.
 
     >>> ends_of((0.5, None)), ends_of(None)
     ((0.5, nan), (nan, nan))
@@ -156,7 +156,7 @@ def ends_of(interval: Ends | None) -> tuple[float, float]:
 
 
 def agreement_of(fit: "LognormalFit", seed: int = 0) -> Agreement:
-    """Return the goodness of fit of a curve, if the p-values cost little."""
+    """Return the goodness of fit of a curve, if the p-values can be computed quickly."""
     levels = fit.counts.levels.size
     repetitions = min(REPETITIONS, MOST_DRAWN // levels)
     if repetitions < FEWEST:
@@ -172,7 +172,7 @@ def agreement_of(fit: "LognormalFit", seed: int = 0) -> Agreement:
 
 
 def repeated_of(fit: "LognormalFit", levels: FloatArray, repetitions: int, seed: int = 0) -> Repeated:
-    """Return intervals of a curve from the bootstrap, or the reason of missing ones."""
+    """Return intervals of a curve from the bootstrap, or the reason for missing intervals."""
     count = repetitions * max(fit.counts.levels.size, levels.size)
     if count > MOST_REPEATED:
         size = fit.counts.levels.size

@@ -15,12 +15,12 @@ from rocking.errors import InvalidValueError
 class Regression:
     """A line y = intercept + slope x by least squares."""
 
-    intercept: float  # intercept, slope: the line [unit of y, and that over the unit of x]
+    intercept: float  # intercept [unit of y] and slope [unit of y over unit of x] of the line
     slope: float
     scatter: float  # standard deviation of the residuals, with n - 2 degrees of freedom [unit of y]
     slope_error: float  # standard error of the slope [unit of the slope]
     determination: float  # R squared: fraction of the variance of y explained by the line [-]
-    residuals: FloatArray  # residual of each point [unit of y]
+    residuals: FloatArray  # residuals of the points [unit of y]
 
     @property
     def count(self) -> int:
@@ -32,8 +32,8 @@ class Regression:
         return np.asarray(self.intercept + self.slope * np.asarray(x, dtype=np.float64))
 
     def probability_above(self, y: float, x: Any) -> FloatArray:
-        """Return the probability that a new point at x [unit of x] lies above y [unit of y] [-]."""
-        # for normal residuals, without the uncertainty of the line
+        """Return the probability that a new point at x [unit of x] is above y [unit of y] [-]."""
+        # for normal residuals; the uncertainty of the line is not included
         margin = self.at(x) - y
         if self.scatter == 0.0:
             return np.asarray(margin > 0.0, dtype=np.float64)

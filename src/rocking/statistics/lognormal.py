@@ -41,28 +41,28 @@ from rocking.statistics.profiles import FractileConstraint, ProbabilityConstrain
 Method = Literal["auto", "maximum-likelihood", "penalised"]
 IntervalMethod = Literal["profile", "bootstrap", "wald"]
 SIDES = np.array([-1.0, 1.0])
-LARGEST_LOGARITHM = 690.0  # beyond this a median is no float64 [-]
+LARGEST_LOGARITHM = 690.0  # a larger logarithm gives no float64 median [-]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LognormalFit:
     """Lognormal fragility curve of outcomes, from `fit_lognormal`.
 
-    Without a curve, `median` and `dispersion` are None, `verdict` contains the reason, and methods that need a curve
-    raise an error.
+    If there is no curve, `median` and `dispersion` are None, and `verdict` contains the reason. Methods that need a
+    curve then raise an error.
 
     Parameters
     ----------
     counts : Counts
         The outcomes.
     separation : Separation
-        Arrangement of failures and survivals along the levels; its value is a sentence.
+        Arrangement of failures and survivals along the levels. The value is a sentence.
     method : {"maximum-likelihood", "penalised", "none"}
-        Maximised likelihood; "none" without a curve.
+        Likelihood that was maximised; "none" if there is no curve.
     scale : LogScale, optional
-        Scale of the coefficients; None with a single level.
+        Scale of the coefficients; None if there is a single level.
     curves : FittedCurves, optional
-        The curve, or None.
+        The curve; None if there is none.
     """
 
     counts: Counts
@@ -94,7 +94,7 @@ class LognormalFit:
 
     @property
     def dispersion(self) -> float | None:
-        """Standard deviation of the natural logarithm of the level at failure, beta [-]."""
+        """Dispersion beta, the standard deviation of the natural logarithm of the level at failure [-]."""
         return None if self.curve is None else self.curve[1]
 
     @property
@@ -111,10 +111,10 @@ class LognormalFit:
 
     @property
     def median_interval(self) -> tuple[float | None, float | None]:
-        """Largest survived and smallest failed level, if the median is not unique [unit of the levels].
+        """Largest survived level and smallest failed level, if the median is not unique [unit of the levels].
 
-        After quasi-complete separation both are the level with mixed outcomes: the limit of the likelihood, not a
-        certainty. None for a missing bound; both None for a unique median, or without a rising curve.
+        After quasi-complete separation, both are the level with mixed outcomes, which is a limit of the likelihood, not
+        a certainty. A missing bound is None. Both are None for a unique median, or if there is no rising curve.
         """
         return median_interval(self.counts, self.separation)
 
@@ -137,7 +137,7 @@ class LognormalFit:
 
     @cached_property
     def verdict(self) -> str:
-        """Conclusions as sentences; levels are numbers without a unit."""
+        """Conclusions as sentences. Levels are numbers without a unit."""
         return self.verdict_in("")
 
     def verdict_in(self, unit: str, size: float = 1.0, *, clusters: bool = True) -> str:
@@ -146,11 +146,11 @@ class LognormalFit:
         Parameters
         ----------
         unit : str
-            Name of the unit in the text; empty for none.
+            Name of the unit in the text; empty for no unit.
         size : float
-            The unit of the levels in this unit [-].
+            Size of the unit of the levels in this unit [-].
         clusters : bool
-            Include the sentence about outcomes of one cluster.
+            True to include the sentence about outcomes of one cluster.
 
         Returns
         -------
@@ -170,14 +170,15 @@ class LognormalFit:
     def interval_method(self) -> IntervalMethod:
         """Default method of intervals.
 
-        The bootstrap of whole clusters if a cluster has more than one outcome, since the likelihood assumes independent
-        outcomes. Otherwise, and with too few clusters (see `verdict`), the profile likelihood.
+        If a cluster has more than one outcome, the method is the bootstrap of entire clusters, because the likelihood
+        assumes independent outcomes. Otherwise, and if there are too few clusters (see `verdict`), the method is the
+        profile likelihood.
         """
         return "bootstrap" if self.counts.is_clustered and not self.counts.scarcity else "profile"
 
     @property
     def _fitted(self) -> tuple[LogScale, FittedCurves]:
-        """The curve and its scale, or an error without a curve."""
+        """The curve and its scale. Raises an error if there is no curve."""
         if self.curves is None or self.scale is None:
             raise InvalidValueError("a fragility curve is needed, got none: {verdict}", verdict=self.verdict)
         return self.scale, self.curves
@@ -212,12 +213,12 @@ class LognormalFit:
         return result
 
     def fractile(self, probability: float) -> float:
-        """Return the level at which a probability of failure is reached.
+        """Return the level with a given probability of failure.
 
         Parameters
         ----------
         probability : float
-            Between 0 and 1, both excluded [-].
+            Probability of failure, between 0 and 1, both excluded [-].
 
         Returns
         -------
@@ -248,11 +249,11 @@ class LognormalFit:
         Parameters
         ----------
         parameter : {"median", "dispersion"} or float
-            A number is the probability of a fractile [-].
+            Parameter of the curve. A number is the probability of a fractile [-].
         level : float
             Confidence level, between 0 and 1 [-].
         method : {"profile", "bootstrap", "wald"}, optional
-            By the likelihood, by the default `bootstrap`, or from standard errors on the logarithmic scale. Default:
+            Profile likelihood, default `bootstrap`, or standard errors on the logarithmic scale. Default:
             `interval_method`.
         repetitions, seed : int
             Number of repetitions of the bootstrap, and its seed.
@@ -260,7 +261,7 @@ class LognormalFit:
         Returns
         -------
         tuple of float
-            Both ends [unit of the levels, or - for the dispersion]; 0 or infinite for an open end.
+            Both ends [unit of the levels, or - for the dispersion]. An open end is 0 or infinite.
         """
         used, sample = self._method_of(method, repetitions, seed)
         scale, curves = self._fitted
@@ -337,7 +338,7 @@ class LognormalFit:
     def _method_of(
         self, method: IntervalMethod | None, repetitions: int, seed: int
     ) -> tuple[str, BootstrapSample | CapacitySample | None]:
-        """Return the method of an interval, and its bootstrap, common to all parameters."""
+        """Return the method of an interval, and the bootstrap that is common to all parameters."""
         used = self.interval_method if method is None else checks.one_of("method", method, get_args(IntervalMethod))
         if used != "bootstrap":
             return used, None
@@ -353,13 +354,13 @@ class LognormalFit:
     def bootstrap(
         self, kind: Resampling | Literal["capacities"] | None = None, *, repetitions: int = 1000, seed: int = 0
     ) -> BootstrapSample | CapacitySample:
-        """Return the study repeated many times.
+        """Return many repetitions of the study.
 
         Parameters
         ----------
         kind : {"parametric", "cases", "clusters", "capacities"}, optional
             Kind of resampling. Default: capacities from the curve for fewer than 30 clusters with one trial at every
-            level each, whole clusters for other named clusters, else parametric.
+            level, entire clusters for other named clusters, otherwise parametric.
         repetitions, seed : int
             Number of repetitions and random seed.
 
@@ -371,7 +372,7 @@ class LognormalFit:
         Raises
         ------
         InvalidValueError
-            If the kind is unknown, or the outcomes do not fit the kind.
+            If the kind is unknown, or if the outcomes do not fit the kind.
         """
         (scale, curves), counts = self._fitted, self.counts
         if kind == "capacities" or (kind is None and counts.draws_capacities):
@@ -436,7 +437,7 @@ def fit_lognormal(
     method: Method = "auto",
     clusters: Iterable[Hashable] | None = None,
 ) -> LognormalFit:
-    """Fit a lognormal fragility curve to outcomes; without a curve the verdict contains the reason.
+    """Fit a lognormal fragility curve to outcomes. If there is no curve, the verdict contains the reason.
 
     Parameters
     ----------
@@ -447,19 +448,19 @@ def fit_lognormal(
     trials : array_like, optional
         Number of trials of each entry, at least 1; default 1 [-].
     method : {"auto", "maximum-likelihood", "penalised"}
-        "auto" maximises the likelihood if a maximum exists, and Firth's penalised likelihood for a step.
+        "auto" maximises the likelihood if a maximum exists, and Firth's penalised likelihood in case of a step.
     clusters : iterable, optional
         Name of the cluster of each entry, such as its record: outcomes of one cluster are not independent.
 
     Returns
     -------
     LognormalFit
-        The fit; check `exists` or read `verdict`.
+        The fit. Check `exists` or read `verdict`.
 
     Raises
     ------
     InvalidValueError
-        If a value is invalid, or "maximum-likelihood" is requested without a maximum.
+        If a value is invalid, or if "maximum-likelihood" is requested and there is no maximum.
 
     Examples
     --------
@@ -473,7 +474,7 @@ def fit_lognormal(
 
 
 def fit_counts(counts: Counts, method: Method = "auto") -> LognormalFit:
-    """Return the lognormal curve of counted outcomes, by a method as for `fit_lognormal`."""
+    """Return the lognormal curve of counted outcomes. The methods are those of `fit_lognormal`."""
     checked = checks.one_of("method", method, get_args(Method))
     separation = separation_of(counts)
     if checked == "maximum-likelihood" and separation is not Separation.OVERLAP:
@@ -498,19 +499,19 @@ def fit_counts(counts: Counts, method: Method = "auto") -> LognormalFit:
 
 
 def lognormal_probability(level: FloatArray, median: float, dispersion: float) -> FloatArray:
-    """Return the probability of failure at levels >= 0 [unit of the median]; zero at zero [-]."""
+    """Return the probability of failure [-] at levels >= 0 [unit of the median]. It is zero at level zero."""
     with np.errstate(divide="ignore"):
         return np.asarray(ndtr(np.log(level / median) / dispersion))  # Eq. 190
 
 
 def difference_extremes(log_median: FloatArray, dispersion: FloatArray) -> FloatArray:
-    """Return ln level of both extremes of the difference of two lognormal curves (repeated if there is one).
+    """Return ln level of both extremes of the difference of two lognormal curves. A single extreme is repeated.
 
     >>> difference_extremes(np.zeros(2), np.array([0.5, 0.25])).round(4).tolist()
     [0.3399, -0.3399]
     """
     (m, n), (s, t) = log_median, dispersion
-    # equal densities: ((u - m)/s)^2 - ((u - n)/t)^2 + 2 ln(s/t) = 0, with u measured from m
+    # the densities are equal if ((u - m)/s)^2 - ((u - n)/t)^2 + 2 ln(s/t) = 0; here u is measured from m
     a, b = t**2 - s**2, s**2 * (n - m)
     c = -(s**2) * (n - m) ** 2 + 2.0 * (s * t) ** 2 * np.log(s / t)  # Eq. 189
     root = np.sqrt(np.maximum(b**2 - a * c, 0.0))

@@ -1,4 +1,4 @@
-"""Maximum-likelihood curves with proof of the maximum, and sentences on their existence."""
+"""Maximum-likelihood curves with proof of the maximum, and sentences on the existence of curves."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -13,12 +13,12 @@ from rocking.messages import Message
 from rocking.statistics.counts import Counts
 from rocking.statistics.probit import Derivatives, PenalisedProbit, Probit, starts, tails
 
-FLATNESS = 1e-13  # relative trend below which it is rounding [-]
+FLATNESS = 1e-13  # smaller relative trends are rounding [-]
 LEVEL = 0.95  # confidence level of the bounds in a verdict [-]
 
 
 class Separation(Enum):
-    """Arrangement of failures and survivals along the levels; the values are sentences for users."""
+    """Arrangement of failures and survivals along the levels. The values are sentences for users."""
 
     OVERLAP = (
         "failures and survivals overlap, and failures increase with the level: the maximum-likelihood curve exists"
@@ -39,18 +39,18 @@ class Separation(Enum):
 
     @property
     def step(self) -> bool:
-        """True if the likelihood increases towards a step at some level: dispersion 0."""
+        """True if the likelihood increases towards a step at a level (dispersion 0)."""
         return self in {Separation.COMPLETE, Separation.QUASI_COMPLETE}
 
 
 def classify(levels: FloatArray, failures: FloatArray, trials: FloatArray) -> IntArray:
-    """Return the indices of the separation of many data sets, one row each, along ascending levels."""
+    """Return the indices of the separation of many data sets, one row per data set, along ascending levels."""
     failed, survived = failures > 0.0, trials > failures
     last = levels.size - 1
     first_failed, last_failed = np.argmax(failed, axis=1), last - np.argmax(failed[:, ::-1], axis=1)
     first_survived, last_survived = np.argmax(survived, axis=1), last - np.argmax(survived[:, ::-1], axis=1)
     trend, largest = _trend(levels, failures, trials)
-    # the first true condition decides
+    # the first true condition applies
     cases = (
         (Separation.NONE_FAILED, ~failed.any(axis=1)),
         (Separation.ALL_FAILED, ~survived.any(axis=1)),
@@ -86,7 +86,7 @@ def median_interval(counts: Counts, separation: Separation) -> tuple[float | Non
 
 
 def _trend(levels: FloatArray, failures: FloatArray, trials: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the score at slope zero, whose sign is that of the slope, and its largest possible value."""
+    """Return the score at slope zero, which has the sign of the slope, and its largest possible value."""
     u = np.log(levels / levels[0])
     total = np.maximum(trials.sum(axis=1), 1.0)
     distance = u - ((trials @ u) / total)[:, None]
@@ -121,9 +121,11 @@ def verdict_of(
     counts: Counts, separation: Separation, curve: tuple[float, float] | None, rise: float | None,
     level: Callable[..., str], *, clusters: bool,
 ) -> str:  # fmt: skip
-    """Return sentences with the conclusions from the outcomes and the limits of the likelihood."""
-    # The curve is median and dispersion; `rise` its likelihood ratio against a line that does not depend on the level,
-    # a chi-square of one degree of freedom; None for a penalised fit. `level` writes a level, with its unit.
+    """Return the conclusions from the outcomes and the limits of the likelihood as sentences."""
+    # curve: median and dispersion
+    # rise: likelihood ratio of the curve against a line that does not depend on the level, a chi-square variable of one
+    # degree of freedom; None for a penalised fit
+    # level: function that writes a level with its unit
     parts = [_finding(counts, separation, curve, level, penalised=rise is None)]
     if rise is not None and rise < 3.841:
         parts.append("The increase with the level is not significant (5 % test): intervals may be open.")
@@ -175,7 +177,7 @@ def _bound(counts: Counts, separation: Separation, level: Callable[..., str]) ->
     none = separation is Separation.NONE_FAILED
     index = -1 if none else 0
     trials = counts.trials[index]
-    # the one-sided Clopper-Pearson bound for 0 failures, about 3 / trials for 95 %
+    # one-sided Clopper-Pearson bound for 0 failures, about 3 / trials for 95 %
     bound = float(1.0 - (1.0 - LEVEL) ** (1.0 / float(trials)))  # Eq. 227
     facts = {"level": level(counts.levels[index]), "trials": trials, "confidence": f"{LEVEL:.0%}"}
     if none:
@@ -184,18 +186,18 @@ def _bound(counts: Counts, separation: Separation, level: Callable[..., str]) ->
 
 
 DECREMENT = 1e-18  # tolerance of the squared distance to the maximum, in standard errors [-]
-SEARCH_STEPS = 60  # largest number of steps from each of several starts [-]
+SEARCH_STEPS = 60  # largest number of steps per start in a search from several starts [-]
 STEPS = 200  # largest number of steps; about 12 are typical [-]
 DEFINITE = 1e-13  # smallest relative determinant of a definite curvature, over the product of the diagonal [-]
-MIN_VARIANCE = 1e-12  # smallest relative variance in any direction, so that the covariance has an inverse [-]
+MIN_VARIANCE = 1e-12  # smallest relative variance in any direction [-], so that the covariance has an inverse
 MAX_NUMBERS = 2_000_000  # largest number of values in memory
 
 
 class Objective(Protocol):
-    """Objective of a maximisation: many functions of a few coefficients, one per row."""
+    """Objective of a maximisation: many functions of a few coefficients, one function per row."""
 
     def derivatives(self, theta: FloatArray) -> Derivatives:
-        """Return the values and derivatives at rows of coefficients."""
+        """Return values and derivatives of the functions at rows of coefficients."""
 
     def rows(self, index: Any) -> Self:
         """Return a subset of the functions."""
@@ -208,13 +210,13 @@ class Maximum:
     theta: FloatArray  # rows of coefficients [-]
     value: FloatArray  # values at the maxima [-]
     curvature: FloatArray  # negative Hessians at the maxima [-]
-    proven: BoolArray  # True for a squared distance below 1e-18 and positive definite curvature
+    proven: BoolArray  # True if the squared distance is below 1e-18 and the curvature is positive definite
 
 
 def maximise(objective: Objective, start: FloatArray, *, steps: int = STEPS) -> Maximum:
-    """Return the maxima of many functions from rows of start coefficients; each function must have a maximum."""
-    # the existence of the maximum must be known: for an unbounded function the steps diverge to zero gradient and
-    # curvature
+    """Return the maxima of many functions, from rows of start coefficients. Every function must have a maximum."""
+    # the existence of the maximum must be known, because for an unbounded function the steps diverge to zero gradient
+    # and curvature
     theta = np.array(start, dtype=np.float64)
     count, order = theta.shape
     value, decrement = np.full(count, -np.inf), np.full(count, np.inf)
@@ -223,9 +225,9 @@ def maximise(objective: Objective, start: FloatArray, *, steps: int = STEPS) -> 
     running = objective
     for _ in range(steps):
         trial = theta[active] + factor[:, None] * step
-        with np.errstate(over="ignore", invalid="ignore"):  # a trial too far out is rejected by its value
+        with np.errstate(over="ignore", invalid="ignore"):  # a trial that is too far away is rejected by its value
             at = running.derivatives(trial)
-        # rounding of the sum must not stop the last steps
+        # rounding errors of the sum must not stop the last steps
         better = at.value >= value[active] - 1e-12 * (1.0 + np.abs(at.value))
         accepted = active[better]
         theta[accepted], value[accepted], curvature[accepted] = trial[better], at.value[better], at.curvature[better]
@@ -251,7 +253,7 @@ def maximise_from(objective: Objective, starts: FloatArray) -> Maximum:
 
 
 def _newton_step(gradient: FloatArray, curvature: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the step to the top of the parabola, or uphill without one, and the decrement."""
+    """Return the step to the top of the parabola (uphill if there is no top), and the decrement."""
     definite = positive_definite(curvature)
     order = gradient.shape[1]
     scale = np.trace(np.abs(curvature), axis1=1, axis2=2) + np.linalg.norm(gradient, axis=1) + 1e-150
@@ -273,7 +275,7 @@ def positive_definite(matrix: FloatArray) -> BoolArray:
 
 
 def _solve(matrix: FloatArray, right: FloatArray) -> FloatArray:
-    """Solve many small systems; sizes one and two by Cramer's rule, 100 times faster than a loop."""
+    """Solve many small systems. Sizes one and two use Cramer's rule, which is 100 times faster than a loop."""
     if matrix.shape[1] == 1:
         return right / matrix[:, 0]
     if matrix.shape[1] > 2:
@@ -315,17 +317,17 @@ class FittedCurves:
     """Curves Phi(a + b u) of many data sets with common levels."""
 
     theta: FloatArray  # rows of a and b; NaN without a rising curve [-]
-    curvature: FloatArray  # observed information of each curve [-]
-    value: FloatArray  # log likelihood of each curve, with the penalty of penalised fits [-]
+    curvature: FloatArray  # observed information of the curves [-]
+    value: FloatArray  # log likelihood of the curves, including the penalty of penalised fits [-]
     exists: BoolArray  # True for a rising curve with a proven maximum
     penalised: BoolArray  # True for penalised fits
-    separation: IntArray  # `Separation.number` of each data set
+    separation: IntArray  # `Separation.number` of the data sets
 
 
 def find_curves(
     levels: FloatArray, scale: LogScale, failures: FloatArray, trials: FloatArray, *, penalised: bool = False
 ) -> FittedCurves:
-    """Return the maximum-likelihood curves of many data sets, one row each; penalised ones for steps."""
+    """Return the maximum-likelihood curves of many data sets, one per row. Steps get penalised curves."""
     kinds = classify(levels, failures, trials)
     step = np.isin(kinds, [kind.number for kind in Separation if kind.step])
     overlap = kinds == Separation.OVERLAP.number
@@ -352,7 +354,7 @@ def _pieces(rows: IntArray, width: int, max_numbers: int = 400_000) -> list[IntA
 
 
 def log_fractile(theta: FloatArray, scale: LogScale, variate: float | FloatArray) -> FloatArray:
-    """Return the logarithm of the level at which curves reach the probability of a standard normal variate."""
+    """Return the logarithm of the level at which curves have the probability of a standard normal variate."""
     return scale.log_level((variate - theta[:, 0]) / theta[:, 1])  # Eq. 192
 
 
@@ -362,7 +364,7 @@ def log_dispersion(theta: FloatArray, scale: LogScale) -> FloatArray:
 
 
 def log_quantity(theta: FloatArray, scale: LogScale, variate: float | None) -> FloatArray:
-    """Return the logarithmic fractile of curves at a variate; the logarithmic dispersion without a variate."""
+    """Return the logarithmic fractile of curves at a variate. Without a variate, return the logarithmic dispersion."""
     return log_dispersion(theta, scale) if variate is None else log_fractile(theta, scale, variate)
 
 
@@ -377,7 +379,7 @@ def standard_errors(theta: FloatArray, curvature: FloatArray, scale: LogScale, v
 
 
 def quadratic_error(slope: FloatArray, curvature: FloatArray) -> FloatArray:
-    """Return the standard errors of functions of the coefficients, from their derivatives (delta method)."""
+    """Return the standard errors of functions of the coefficients, from derivatives (delta method)."""
     h = curvature
     determinant = h[:, 0, 0] * h[:, 1, 1] - h[:, 0, 1] ** 2
     first, second = slope[:, 0], slope[:, 1]
@@ -386,10 +388,10 @@ def quadratic_error(slope: FloatArray, curvature: FloatArray) -> FloatArray:
 
 
 def with_cluster_errors(counts: Counts, scale: LogScale, curves: FittedCurves, weights: FloatArray) -> FittedCurves:
-    """Return curves with the inverse covariance between clusters as curvature; weights: of clusters by data set.
+    """Return curves whose curvature is the inverse covariance between clusters. `weights` are those of clusters.
 
-    The covariance is H^-1 M H^-1, with the information H and the sum M of the squared scores of whole clusters
-    (Liang & Zeger 1986, Biometrika 73:13): that of the likelihood, H^-1, holds for independent outcomes only.
+    The covariance is H^-1 M H^-1, with the information H and the sum M of the squared scores of entire clusters (Liang
+    & Zeger 1986, Biometrika 73:13). The covariance H^-1 of the likelihood applies only to independent outcomes.
     """
     curvature = np.full_like(curves.curvature, np.nan)
     good = np.flatnonzero(curves.exists)

@@ -1,4 +1,4 @@
-"""Nested states of one body: separate curves may cross, curves with a common dispersion do not."""
+"""Nested states of one body. Separate curves may cross, but curves with a common dispersion do not."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -27,17 +27,17 @@ ORDERED_METHODS: tuple[OrderedMethod, ...] = get_args(OrderedMethod)
 
 @dataclass(frozen=True, eq=False)
 class OrderedProbit:
-    """Log likelihood of states with falling thresholds a1 > a2 > ... and one slope b, concave in all (Pratt 1981)."""
+    """Log likelihood of states with decreasing thresholds a1 > a2 > ... and one slope b. It is concave (Pratt 1981)."""
 
     position: FloatArray  # positions of the levels [-]
-    ended: FloatArray  # number of trials by final state (row, mildest first) and level [-]
+    ended: FloatArray  # number of trials by final state (rows, mildest state first) and level [-]
 
     def rows(self, index: Any) -> Self:
-        """Return the function itself: there is only one."""
+        """Return the function itself, because there is only one."""
         return self
 
     def derivatives(self, theta: FloatArray) -> Derivatives:
-        """Return the value and derivatives at one row: the thresholds, and the slope."""
+        """Return value and derivatives at one row, which contains the thresholds and the slope."""
         thresholds, slope = theta[0, :-1], theta[0, -1]
         if np.any(np.diff(thresholds) >= 0.0):
             order = theta.shape[1]
@@ -60,7 +60,7 @@ class OrderedProbit:
         return self._collected(float(value + np.sum(between * width)), first, bend, -between * p * q)  # Eq. 216
 
     def _collected(self, value: float, first: FloatArray, bend: FloatArray, across: FloatArray) -> Derivatives:
-        """Return derivatives with respect to thresholds and slope from those to the variates."""
+        """Convert derivatives with respect to the variates to derivatives with respect to thresholds and slope."""
         count = first.shape[0]
         moves = np.zeros((count, count + 1, self.position.size))
         moves[np.arange(count), np.arange(count)] = 1.0
@@ -72,7 +72,7 @@ class OrderedProbit:
 
 
 def nested_curves(levels: FloatArray, reached: FloatArray, trials: FloatArray) -> list[Curve]:
-    """Return the curves of nested states with one dispersion, from the counts of trials that reached each state."""
+    """Return the curves of nested states with one dispersion, from the counts of trials that reached the states."""
     fits = [fit_lognormal(levels, counts, trials) for counts in reached]
     has_equal = any(np.array_equal(lesser, worse) for lesser, worse in pairwise(reached))
     if has_equal or any(fit.method != "maximum-likelihood" for fit in fits):
@@ -121,7 +121,7 @@ class OrderedFit:
 
     @property
     def crossing(self) -> float | None:
-        """Level at which the curves cross, or None [unit of the levels]."""
+        """Level at which the curves cross [unit of the levels]; None if they do not cross."""
         if self.rocked is None or self.overturned is None:
             return None
         (m, s), (n, t) = self.rocked, self.overturned
@@ -133,7 +133,7 @@ class OrderedFit:
 
     @property
     def excess(self) -> float | None:
-        """Largest excess of the probability of overturning over that of rocking, between the levels [-]."""
+        """Largest excess of the probability of overturning over the probability of rocking, between the levels [-]."""
         if self.rocked is None or self.overturned is None:
             return None
         ends = np.log(self.counts.levels[[0, -1]])
@@ -164,7 +164,7 @@ class OrderedFit:
 
     def probabilities(self, im: Any) -> FloatArray:
         """Return the probabilities of no rocking, rocking and overturned at levels >= 0, along the last axis [-]."""
-        # beyond a crossing the probability of overturning is limited to that of rocking
+        # beyond a crossing, the probability of overturning is limited to the probability of rocking
         if self.rocked is None or self.overturned is None:
             raise InvalidValueError("two fragility curves are needed, got fewer: {verdict}", verdict=self.verdict)
         level, _ = levels_of(im)
@@ -189,7 +189,7 @@ def fit_ordered(
     trials : array_like, optional
         Number of trials of each entry, at least 1; default 1 [-].
     method : {"separate", "common-dispersion"}
-        Separate curves, or one dispersion from the likelihood of all three states (ordered probit).
+        Separate curves, or one common dispersion from the likelihood of all three states (ordered probit).
 
     Returns
     -------
@@ -199,7 +199,7 @@ def fit_ordered(
     Raises
     ------
     InvalidValueError
-        If a value is invalid, or a common dispersion is requested without a maximum of the likelihood.
+        If a value is invalid, or if a common dispersion is requested and the likelihood has no maximum.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Probit likelihood of many data sets, stable in the far tails; plain and penalised."""
+"""Probit likelihood of many data sets, plain or penalised. It is stable in the far tails."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple, Self
@@ -8,28 +8,28 @@ from scipy.special import erfcx
 
 from rocking.conventions import FloatArray
 
-FAR = 300.0  # number of standard deviations above which the curvature is from its series: the closed form cancels [-]
-WIDEST = 1 << 16  # largest number of levels processed together: intermediate arrays need 100 bytes per level
-SLOPES = np.array([0.3, 1.0, 3.0, 10.0, 30.0])  # start slopes b of the search for the maximum [-]
+FAR = 300.0  # number of standard deviations [-]; beyond, a series avoids cancellation in the curvature
+WIDEST = 1 << 16  # largest number of levels processed together; intermediate arrays need 100 bytes per level
+SLOPES = np.array([0.3, 1.0, 3.0, 10.0, 30.0])  # start slopes b for the search of the maximum [-]
 POSITIONS = 9  # number of start positions of the search [-]
 
 
 class Tails(NamedTuple):
-    """Both tails of the normal distribution: failure below, survival above."""
+    """Both tails of the normal distribution: failure (lower tail) and survival (upper tail)."""
 
     log_failure: FloatArray  # log_failure, log_survival: ln Phi(eta) and ln Phi(-eta) [-]
     log_survival: FloatArray
-    # failure_rate, survival_rate: phi(eta) / Phi(eta) and phi(eta) / Phi(-eta): slopes of the two logarithms, up to
+    # failure_rate, survival_rate: phi(eta) / Phi(eta) and phi(eta) / Phi(-eta), the slopes of the two logarithms, up to
     # sign [-]
     failure_rate: FloatArray
     survival_rate: FloatArray
-    # failure_bend, survival_bend: minus the second derivatives of the two logarithms, between 0 and 1 [-]
+    # failure_bend, survival_bend: negative second derivatives of the two logarithms, between 0 and 1 [-]
     failure_bend: FloatArray
     survival_bend: FloatArray
 
 
 def tails(eta: FloatArray) -> Tails:
-    """Return logarithms, slopes and curvatures of both normal tails, to 1e-15 (far curvatures to 1e-11)."""
+    """Return logarithms, slopes and curvatures of both normal tails, with errors of 1e-15 (far curvatures 1e-11)."""
     t = np.abs(eta)
     scaled = erfcx(np.sqrt(0.5) * t)
     bell = np.exp(-0.5 * t * t)
@@ -48,23 +48,23 @@ def tails(eta: FloatArray) -> Tails:
 
 
 class Derivatives(NamedTuple):
-    """A function of a few coefficients, and its first and second derivatives, one row per data set."""
+    """A function of a few coefficients with first and second derivatives, one row per data set."""
 
-    value: FloatArray  # the function [-]
-    gradient: FloatArray  # its gradient; the last axis is the coefficient [-]
-    curvature: FloatArray  # minus its Hessian; positive definite for a strictly concave function [-]
+    value: FloatArray  # values of the function [-]
+    gradient: FloatArray  # gradient of the function [-]; the last axis is the coefficient
+    curvature: FloatArray  # negative Hessian of the function [-]; positive definite for a strictly concave function
 
 
 @dataclass(frozen=True, eq=False)
 class Probit:
     """Log likelihood of failure with probability Phi(a + b u), one row per data set.
 
-    It is concave in (a, b), strictly concave with data at two levels: a stationary point is the only maximum. Binomial
-    coefficients are omitted, so that pooling equal levels has no effect.
+    The log likelihood is concave in (a, b), and strictly concave for data at two levels, so that a stationary point is
+    the only maximum. Binomial coefficients are omitted, so that pooling equal levels has no effect.
     """
 
     position: FloatArray  # u, scaled logarithms of the levels; one row, or one row per data set [-]
-    # failures, survivals: numbers of failures and survivals at each level; one row, or one row per data set [-]
+    # failures, survivals: numbers of failures and survivals at every level [-]; one row, or one row per data set
     failures: FloatArray
     survivals: FloatArray
     concave: ClassVar[bool] = True
@@ -79,7 +79,7 @@ class Probit:
         return theta[:, :1] + theta[:, 1:2] * self.position  # Eq. 190
 
     def derivatives(self, theta: FloatArray) -> Derivatives:
-        """Return the log likelihood with its gradient and minus its Hessian, the observed information."""
+        """Return the log likelihood, its gradient, and its negative Hessian (the observed information)."""
         if self.position.shape[1] > WIDEST:
             pieces = (slice(first, first + WIDEST) for first in range(0, self.position.shape[1], WIDEST))
             fields = (self.position, self.failures, self.survivals)
@@ -110,7 +110,7 @@ class Probit:
 
 
 def _times(count: FloatArray, logarithm: FloatArray) -> FloatArray:
-    """Return the product, with 0 for 0 times minus infinity: no trial, no contribution."""
+    """Return count times logarithm. 0 times minus infinity is 0, because missing trials contribute nothing."""
     if np.isfinite(logarithm).all():
         return count * logarithm
     return np.where(count > 0.0, count * np.where(count > 0.0, logarithm, 0.0), 0.0)
@@ -121,13 +121,13 @@ def _matrix(moments: FloatArray) -> FloatArray:
 
 
 def start_positions(position: FloatArray) -> FloatArray:
-    """Return start positions of probability 0.5, evenly distributed over the levels and their midpoints."""
+    """Return start positions with probability 0.5, evenly distributed over the levels and their midpoints."""
     candidates = np.sort(np.concatenate([position, 0.5 * (position[1:] + position[:-1])]))
     return candidates[np.linspace(0, candidates.size - 1, POSITIONS).round().astype(np.int64)]
 
 
 def starts(position: FloatArray) -> FloatArray:
-    """Return start coefficients: the penalised likelihood may have more than one maximum."""
+    """Return start coefficients. There are several, because the penalised likelihood may have several maxima."""
     start, slope = (grid.ravel() for grid in np.meshgrid(start_positions(position), SLOPES))
     return np.stack([-slope * start, slope], axis=1)
 
@@ -136,13 +136,13 @@ def starts(position: FloatArray) -> FloatArray:
 class PenalisedProbit(Probit):
     """Log likelihood plus half the logarithm of the determinant of the Fisher information, one row per data set.
 
-    It may not be concave: the result is a proven local maximum, the largest from all `starts`.
+    This function may not be concave. The result is a proven local maximum, the largest from all `starts`.
     """
 
     concave: ClassVar[bool] = False
 
     def derivatives(self, theta: FloatArray) -> Derivatives:
-        """Return the penalised value and derivatives; minus infinity for zero information."""
+        """Return the penalised value and derivatives. The value is minus infinity for zero information."""
         eta = self.eta(theta)
         at = tails(eta)
         plain, penalty = self._of(at), self._penalty(eta, at)

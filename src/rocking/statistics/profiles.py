@@ -1,4 +1,4 @@
-"""Profile-likelihood intervals and bands: all values that the data do not reject."""
+"""Profile-likelihood intervals and bands, which contain all values that the data do not reject."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
@@ -10,8 +10,8 @@ from rocking.conventions import FloatArray, IntArray
 from rocking.statistics.maximum_likelihood import maximise, maximise_from
 from rocking.statistics.probit import SLOPES, Derivatives, Probit, start_positions
 
-FARTHEST = 300.0  # distance above which an end is open [-]
-ROOT = 1e-10  # tolerance of the root of the likelihood drop at an end [-]
+FARTHEST = 300.0  # an end at a larger distance is open [-]
+ROOT = 1e-10  # tolerance of the root of the likelihood decrease at an end [-]
 
 
 class Line(NamedTuple):
@@ -19,16 +19,16 @@ class Line(NamedTuple):
 
     origin: FloatArray  # origin, direction: rows of a and b [-]
     direction: FloatArray
-    moves: FloatArray  # derivative of theta with respect to the fixed quantity is `moves` + t `turns` [-]
+    moves: FloatArray  # the derivative of theta with respect to the fixed quantity is `moves` + t `turns` [-]
     turns: FloatArray  # see `moves` [-]
 
 
 @dataclass(frozen=True, eq=False)
 class OnLine:
-    """The likelihood along lines, a function of t only."""
+    """The likelihood along lines, as a function of t only."""
 
-    model: Probit  # the likelihood, one common row, or one row per end
-    line: Line  # the lines, one per row
+    model: Probit  # the likelihood, with one common row or one row per end
+    line: Line  # the lines, one line per row
 
     def rows(self, index: Any) -> Self:
         return type(self)(self.model.rows(index), Line(*(field[index] for field in self.line)))
@@ -50,7 +50,7 @@ def flat_line(model: Probit) -> tuple[FloatArray, FloatArray]:
 
 @dataclass(frozen=True, eq=False)
 class Constraint(ABC):
-    """A quantity of the curve with fixed values, one per row."""
+    """A quantity of the curve with fixed values, one value per row."""
 
     rising = True
     """True if the free coefficient is the slope b, which must not become negative."""
@@ -61,10 +61,10 @@ class Constraint(ABC):
 
     @abstractmethod
     def limit(self, model: Probit, side: FloatArray) -> FloatArray:
-        """Return the limit of the profile log likelihood at the end of its range; minus infinity for none."""
+        """Return the limit of the profile log likelihood at the end of its range; minus infinity if none."""
 
     def starts(self, model: Probit, value: FloatArray, free: FloatArray) -> FloatArray:
-        """Return start values of the free coefficients (first axis); one guess for a concave likelihood."""
+        """Return start values of the free coefficients (first axis). A concave likelihood has one start value."""
         others = np.zeros((0, free.size)) if model.concave else self._others(model, value)
         return np.concatenate([free[None], others])[:, :, None]
 
@@ -77,9 +77,9 @@ class Constraint(ABC):
 
 @dataclass(frozen=True, eq=False)
 class FractileConstraint(Constraint):
-    """The position u at which the curve reaches given probabilities."""
+    """The position u at which the curve has given probabilities."""
 
-    variate: FloatArray  # standard normal variate of the probability, one per row [-]
+    variate: FloatArray  # standard normal variates of the probabilities, one per row [-]
 
     def line(self, value: FloatArray) -> Line:
         """Return the curves through the probability at given positions."""
@@ -87,7 +87,7 @@ class FractileConstraint(Constraint):
         return Line(_pair(self.variate, zeros), _pair(-value, ones), _pair(zeros, zeros), _pair(-ones, zeros))
 
     def limit(self, model: Probit, side: FloatArray) -> FloatArray:
-        """Return the largest likelihood of a constant probability below (above) the given one."""
+        """Return the largest likelihood of a constant probability below (above) the given probability."""
         flat = flat_line(model)[0]
         height = np.where(side > 0.0, np.minimum(flat, self.variate), np.maximum(flat, self.variate))
         return model.derivatives(_pair(height, np.zeros_like(side))).value
@@ -105,13 +105,13 @@ class ProbabilityConstraint(Constraint):
         return Line(_pair(value, zeros), _pair(-self.position, ones), _pair(ones, zeros), _pair(zeros, zeros))
 
     def limit(self, model: Probit, side: FloatArray) -> FloatArray:
-        """Return minus infinity: overlapping data exclude probabilities of 0 and 1."""
+        """Return minus infinity, because overlapping data exclude probabilities of 0 and 1."""
         return np.full_like(side, -np.inf)
 
 
 @dataclass(frozen=True, eq=False)
 class SlopeConstraint(Constraint):
-    """The logarithm of the slope b, the negative logarithm of the dispersion."""
+    """The logarithm of the slope b, which is the negative logarithm of the dispersion."""
 
     rising = False
 
@@ -134,12 +134,12 @@ def _pair(first: FloatArray, second: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class Profile:
-    """A maximum of the likelihood, and the drop that defines an interval."""
+    """A maximum of the likelihood, and the decrease that defines an interval."""
 
-    model: Probit  # the likelihood, penalised or not; one common row, or one row per end
-    value: FloatArray  # its maxima, one or as many [-]
+    model: Probit  # the likelihood, penalised or not, with one common row or one row per end
+    value: FloatArray  # maxima of the likelihood [-], one maximum or one per row
     theta: FloatArray  # rows of a and b at the maxima [-]
-    quantile: float  # root of the chi-square quantile: 1.96 for 95 % [-]
+    quantile: float  # root of the chi-square quantile [-], 1.96 for 95 %
 
     def rows(self, index: IntArray) -> "Profile":
         """Return a subset of the rows."""
@@ -147,12 +147,12 @@ class Profile:
         return Profile(self.model.rows(index), value, theta, self.quantile)
 
     def ends(self, constraint: Constraint, start: FloatArray, error: FloatArray, side: FloatArray) -> FloatArray:
-        """Return the ends at which the profile has dropped by the quantile, one per row; infinite if it never does."""
-        # over rising curves the confidence region is convex: it is one interval
+        """Return the ends at which the profile has decreased by the quantile, one per row. They may be infinite."""
+        # for rising curves, the confidence region is convex, so that it is one interval
         result = side * np.inf
         closed = np.flatnonzero(self._root(constraint.limit(self.model, side)) > self.quantile)
         if closed.size:
-            # a stride of a large standard error would leave the range of float64
+            # a step of a large standard error would leave the range of float64
             stride = side[closed] * np.minimum(error[closed] * self.quantile, 1.0)
             result[closed] = self.rows(closed)._descend(constraint.rows(closed), start[closed], stride)
         return result
@@ -161,7 +161,7 @@ class Profile:
         return np.asarray(np.sqrt(2.0 * np.maximum(self.value - value, 0.0)))  # Eq. 204
 
     def _descend(self, constraint: Constraint, start: FloatArray, stride: FloatArray) -> FloatArray:
-        """Return the ends at which the root of the drop is the quantile, by Newton's method (nearly linear)."""
+        """Return the ends at which the root of the decrease equals the quantile, by Newton's method (nearly linear)."""
         low, high, largest = np.zeros_like(start), np.full_like(start, np.inf), FARTHEST / np.abs(stride)
         distance = np.minimum(1.0, largest)
         t = np.zeros_like(start) + self.theta[:, 1 if constraint.rising else 0]
@@ -180,10 +180,10 @@ class Profile:
         return np.where(low < largest, start + distance * stride, np.sign(stride) * np.inf)
 
     def _fall(self, constraint: Constraint, at: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return the root of the drop at fixed values, its slope, and the free coefficient."""
+        """Return the root of the decrease at fixed values, its slope, and the free coefficient."""
         line = constraint.line(at)
         best = maximise_from(OnLine(self.model, line), constraint.starts(self.model, at, t))
-        # for a concave function with maximum at a negative slope, the best rising curve is flat
+        # if a concave function has its maximum at a negative slope, the best rising curve is flat
         free = np.maximum(best.theta, 0.0) if constraint.rising else best.theta
         full = self.model.derivatives(line.origin + free * line.direction)
         root = self._root(full.value)

@@ -8,31 +8,31 @@ from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.messages import Range
 
-_ROUNDING = 9  # digits of a rank: 0.28 * 25 is 7.000000000000001
+_ROUNDING = 9  # digits of a rank, because 0.28 * 25 is 7.000000000000001
 
 
 def quantiles(values: Any, probabilities: Any, axis: int = 0) -> FloatArray:
-    """Return quantiles of a sample along an axis: definition 7 of Hyndman and Fan, which is the default of NumPy.
+    """Return quantiles of a sample along an axis, by definition 7 of Hyndman and Fan (the default of NumPy).
 
     The quantile is linear between the two neighbours in the sorted sample. The median of an even number of values is
-    the mean of the middle two. An infinite value lies beyond all others, for example the peak rotation of an overturned
-    body. A quantile between a finite and an infinite neighbour is infinite: it exceeds the finite one
-    by an unknown amount.
+    the mean of the two middle values. An infinite value, for example the peak rotation of an overturned body, is beyond
+    all other values. A quantile between a finite and an infinite neighbour is infinite, because it exceeds the finite
+    neighbour by an unknown amount.
 
     Parameters
     ----------
     values : array_like
-        The sample; NaN is a missing value.
+        The sample. NaN is a missing value.
     probabilities : float or array_like
         Probabilities of the quantiles, from 0 to 1 [-].
     axis : int, optional
-        The axis along which the sample lies.
+        Axis of the sample.
 
     Returns
     -------
     ndarray
-        The quantiles, with the shape of the probabilities before the remaining axes; NaN where all values are missing
-        or a quantile lies between both infinities.
+        The quantiles, with the shape of the probabilities before the remaining axes. NaN if all values are missing, or
+        if a quantile is between both infinities.
 
     Raises
     ------
@@ -67,6 +67,6 @@ def quantiles(values: Any, probabilities: Any, axis: int = 0) -> FloatArray:
         for ends in (np.floor(rank), np.ceil(rank))
     )
     fraction = rank - np.floor(rank)
-    with np.errstate(invalid="ignore"):  # infinite less infinite, which is not selected
+    with np.errstate(invalid="ignore"):  # infinity minus infinity, which is not selected
         between = np.where(np.isinf(below) | np.isinf(above), below + above, below + fraction * (above - below))
     return np.where(fraction == 0.0, below, between)

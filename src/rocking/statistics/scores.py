@@ -14,12 +14,15 @@ from rocking.messages import Range
 from rocking.statistics.counts import share_interval
 from rocking.statistics.quantiles import quantiles
 
-REPETITIONS = 2000  # bootstrap samples of an interval
+REPETITIONS = 2000  # number of bootstrap samples for an interval
 
 
 @dataclass(frozen=True)
 class Score:
-    """A number with its interval from resampled clusters, such as all outcomes under one motion."""
+    """A number with an interval from resampled clusters.
+
+    A cluster contains, for example, all outcomes under one motion.
+    """
 
     value: float  # the number [-]
     low: float  # low, high: ends of the 95 % interval [-]; NaN for fewer than two clusters
@@ -27,7 +30,7 @@ class Score:
 
     @property
     def resolved(self) -> bool:
-        """True if the interval excludes zero: the difference is significant."""
+        """True if the interval excludes zero, so that the difference is significant."""
         return self.low > 0.0 or self.high < 0.0
 
 
@@ -43,20 +46,20 @@ class ReliabilityBin:
 
 
 class Forecasts:
-    """Forecast probabilities and their outcomes.
+    """Forecast probabilities and observed outcomes.
 
     Outcomes without a result (NaN) are omitted and counted.
 
     Parameters
     ----------
     probability : array_like, shape (n,)
-        Forecast probability of each outcome [-].
+        Forecast probabilities of the outcomes [-].
     outcome : array_like, shape (n,)
-        1 for an event, 0 for none, NaN if unknown [-].
+        1 for an event, 0 for no event, NaN if unknown [-].
     clusters : array_like, shape (n,), optional
-        Names of dependent groups, such as the motion; default: independent outcomes.
+        Names of groups of dependent outcomes, such as the motion. Default: independent outcomes.
     repetitions : int
-        Bootstrap samples of the intervals.
+        Number of bootstrap samples for the intervals.
     seed : int
         Random seed of the bootstrap.
 
@@ -68,7 +71,7 @@ class Forecasts:
     Raises
     ------
     InvalidValueError
-        If the lengths differ, a probability is outside [0, 1], an outcome is invalid, or no entry is complete.
+        If the lengths differ, if a probability is outside [0, 1], if an outcome is invalid, or if no entry is complete.
 
     Examples
     --------
@@ -103,32 +106,32 @@ class Forecasts:
         count = int(self.cluster.max()) + 1
         draws = checks.within("repetitions", repetitions, 1, 10**6)
         random = np.random.default_rng(seed)
-        # number of copies of each cluster in each sample
+        # number of copies of the clusters in the samples
         self._weights = random.multinomial(count, np.full(count, 1.0 / count), size=int(draws)).astype(np.float64)
 
     @property
     def brier(self) -> Score:
-        """Mean square of probability minus outcome; 0 is perfect, 1/4 is a probability of 0.5 (Brier 1950) [-]."""
+        """Mean square of probability minus outcome (Brier 1950) [-]. 0 is perfect; a probability of 0.5 gives 1/4."""
         return self._mean(_brier(self.probability, self.outcome))
 
     @property
     def logarithmic(self) -> Score:
-        """Mean of -ln of the probability of the outcome; infinite if an outcome had probability 0 [nat]."""
+        """Mean of -ln of the probability of the outcome [nat]; infinite if an outcome had probability 0."""
         return self._mean(_surprise(self.probability, self.outcome))
 
     @property
     def accuracy(self) -> Score:
-        """Fraction of correct forecasts; a probability of at least 0.5 forecasts the event [-]."""
+        """Fraction of correct forecasts [-]. A probability of at least 0.5 forecasts the event."""
         return self._mean(self._correct())
 
     @property
     def balanced_accuracy(self) -> Score:
-        """Mean of the fractions of correct forecasts of events and of non-events; 1/2 is chance [-]."""
+        """Mean of the fractions of correct forecasts of events and of non-events [-]. Chance gives 1/2."""
         correct, events = self._correct(), self.outcome == 1.0
         return self._score(lambda sums: 0.5 * (sums(correct, events) + sums(correct, ~events)))  # Eq. 232
 
     def skill(self, other: "Forecasts | float", measure: str = "brier") -> Score:
-        """Return the improvement of a score over that of another forecast of the same outcomes.
+        """Return the improvement of a score over the score of another forecast of the same outcomes.
 
         Parameters
         ----------
@@ -140,12 +143,13 @@ class Forecasts:
         Returns
         -------
         Score
-            Score of the other minus that of this forecast, positive if this one is better; paired [- or nat].
+            Paired difference: score of the other forecast minus score of this forecast [- or nat]. It is positive if
+            this forecast is better.
 
         Raises
         ------
         InvalidValueError
-            If the other forecast has other outcomes, or the score is unknown.
+            If the other forecast has other outcomes, or if the score is unknown.
         """
         loss = _LOSSES[checks.one_of("measure", measure, _LOSSES)]
         if isinstance(other, Forecasts):
@@ -158,7 +162,7 @@ class Forecasts:
 
     @property
     def bias(self) -> Score:
-        """Mean of probability minus outcome; positive if events are overpredicted [-]."""
+        """Mean of probability minus outcome [-]; positive if events are overpredicted."""
         return self._mean(self.probability - self.outcome)
 
     @property
@@ -168,7 +172,7 @@ class Forecasts:
 
     @property
     def calibration(self) -> float:
-        """Spiegelhalter's statistic: approximately standard normal for calibrated probabilities [-]."""
+        """Spiegelhalter's statistic [-]. It is approximately standard normal for calibrated probabilities."""
         p = self.probability
         excess = float(((self.outcome - p) * (1.0 - 2.0 * p)).sum())
         spread = float(((1.0 - 2.0 * p) ** 2 * p * (1.0 - p)).sum())
@@ -180,7 +184,7 @@ class Forecasts:
         Parameters
         ----------
         bins : int
-            Number of equal bins of probability from 0 to 1; empty bins are omitted.
+            Number of equal bins of probability from 0 to 1. Empty bins are omitted.
 
         Returns
         -------
@@ -203,7 +207,7 @@ class Forecasts:
         return self._score(lambda sums: sums(values, np.ones(values.size, dtype=bool)))
 
     def _score(self, statistic: "Callable[[Callable[[FloatArray, BoolArray], FloatArray]], FloatArray]") -> Score:
-        """Return a statistic of subset means, with its interval from samples of clusters."""
+        """Return a statistic of subset means, with an interval from samples of clusters."""
         once = np.ones((1, self._weights.shape[1]))
 
         def means(weights: FloatArray) -> "Callable[[FloatArray, BoolArray], FloatArray]":
@@ -220,7 +224,7 @@ class Forecasts:
         value = float(statistic(means(once))[0])
         if self._weights.shape[1] < 2:
             return Score(value, np.nan, np.nan)
-        samples = statistic(means(self._weights))  # NaN: samples without one of the two outcomes
+        samples = statistic(means(self._weights))  # NaN for samples without one of the two outcomes
         return Score(value, *quantiles(samples, (0.025, 0.975)).tolist())
 
 
@@ -236,16 +240,17 @@ _LOSSES = {"brier": _brier, "logarithmic": _surprise}
 
 
 def logistic_left_out(features: Any, outcome: Any, clusters: Any) -> FloatArray:
-    """Return forecasts of each cluster by a logistic curve fitted to all other clusters.
+    """Return forecasts of every cluster by a logistic curve that is fitted to all other clusters.
 
-    It is the reference for mechanical forecasts, with the logarithms of PGA and PGV as features. Firth's penalty, half
-    the logarithm of the information, keeps it finite for separated outcomes, and removes the bias of few outcomes.
+    With the logarithms of PGA and PGV as features, these forecasts are the reference for mechanical forecasts. Firth's
+    penalty, half the logarithm of the information, keeps the curve finite for separated outcomes and removes the bias
+    for few outcomes.
 
     Parameters
     ----------
     features : array_like, shape (n, k)
-        Features of each outcome, such as ln PGA and ln PGV; without columns the forecast is the fraction of the others,
-        with 0.5 added to both counts.
+        Features of the outcomes, such as ln PGA and ln PGV. Without columns, the forecast is the fraction of events in
+        the other clusters, with 0.5 added to both counts.
     outcome : array_like, shape (n,)
         1, 0, or NaN if unknown [-].
     clusters : array_like, shape (n,)
@@ -254,12 +259,12 @@ def logistic_left_out(features: Any, outcome: Any, clusters: Any) -> FloatArray:
     Returns
     -------
     ndarray, shape (n,)
-        Probability of each outcome by the curve without its cluster [-]; NaN without other outcomes.
+        Probabilities of the outcomes by the curve without their cluster [-]; NaN if there are no other outcomes.
 
     Raises
     ------
     InvalidValueError
-        If the lengths differ or a feature is not finite.
+        If the lengths differ, or if a feature is not finite.
 
     Examples
     --------
@@ -293,7 +298,7 @@ def logistic_left_out(features: Any, outcome: Any, clusters: Any) -> FloatArray:
 
 
 def _firth(design: FloatArray, outcome: FloatArray, steps: int = 100) -> FloatArray:
-    """Return the coefficients of maximum penalised likelihood of a logistic curve (Firth 1993)."""
+    """Return the coefficients of a logistic curve by maximum penalised likelihood (Firth 1993)."""
     theta = np.zeros(design.shape[1])
 
     def value(at: FloatArray) -> float:

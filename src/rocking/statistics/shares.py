@@ -15,7 +15,7 @@ REPETITIONS = 1000  # bootstrap samples of an interval
 
 @dataclass(frozen=True)
 class VarianceShare:
-    """Contribution of one input to the variance of a result, with 95 % intervals [-]."""
+    """Contribution of one input to the variance of a result [-], with 95 % intervals."""
 
     first: float  # first-order index: reduction of the variance if this input were known
     first_low: float
@@ -27,11 +27,11 @@ class VarianceShare:
 
 @dataclass(frozen=True, eq=False)
 class SaltelliDesign:
-    """Points of the unit cube for a result: two samples, and mixtures of both for every input."""
+    """Points of the unit cube for a result: two samples, and one mixture of both samples per input."""
 
-    count: int  # number of points of each sample, a power of two
-    inputs: Mapping[str, int]  # number of dimensions of each input
-    seed: int = 0  # of the scrambled Sobol sequence
+    count: int  # number of points per sample, a power of two
+    inputs: Mapping[str, int]  # number of dimensions by input
+    seed: int = 0  # seed of the scrambled Sobol sequence
 
     def __post_init__(self) -> None:
         count = checks.whole("count", self.count, 2, 1 << 24)
@@ -45,7 +45,7 @@ class SaltelliDesign:
 
     @property
     def points(self) -> FloatArray:
-        """Both samples, then for each input the first sample with that input from the second."""
+        """Both samples, followed for every input by the first sample with this input taken from the second sample."""
         size = sum(self.inputs.values())
         if not size:
             return np.empty((2 * self.count, 0))
@@ -60,10 +60,11 @@ class SaltelliDesign:
         return np.vstack([first, second, *mixed])
 
     def shares(self, answers: FloatArray, repetitions: int = REPETITIONS) -> dict[str, VarianceShare]:
-        """Return the contributions of the inputs, all zero without variance."""
-        # First-order indices by Saltelli's estimator (2010), exactly zero for an input without effect; total indices by
-        # Jansen's (1999); intervals by resampling the points. answers: results at `points`; several columns, such as
-        # motions, are one more input, `case`. Points without a result (NaN) are omitted.
+        """Return the contributions of the inputs; all zero if there is no variance."""
+        # First-order indices use Saltelli's estimator (2010), which is exactly zero for an input without effect. Total
+        # indices use Jansen's estimator (1999). Intervals result from resampling the points.
+        # answers: results at `points`; several columns, such as motions, are an additional input, `case`; points
+        # without a result (NaN) are omitted
         results = np.asarray(answers, dtype=np.float64)
         results = results[:, None] if results.ndim == 1 else results
         rows = (2 + len(self.inputs)) * self.count
@@ -89,11 +90,11 @@ class SaltelliDesign:
 
 
 def _estimates(stacked: FloatArray, weights: FloatArray) -> list[tuple[FloatArray, FloatArray]]:
-    """Return first-order and total indices of every input, then of the case, for each row of weights."""
+    """Return first-order and total indices of all inputs and of the case, for every row of weights."""
     first, second, mixed = stacked[0], stacked[1], stacked[2:]
     mean = weights @ (0.5 * (first + second).mean(axis=1))
     variance = weights @ (0.5 * (first**2 + second**2).mean(axis=1)) - mean**2
-    middle = stacked.mean(axis=2)  # over the cases
+    middle = stacked.mean(axis=2)  # mean over the cases
     scale = np.where(variance > 1e-12 * (1.0 + mean**2), variance, np.inf)
     indices = []
     for k, mixture in enumerate(mixed):

@@ -6,8 +6,8 @@ from rocking.conventions import FloatArray, IntArray
 
 _BITS = 30
 
-# Joe and Kuo (2008), SIAM Journal on Scientific Computing 30(5) 2635, doi:10.1137/070709359: primitive polynomial and
-# first direction numbers of the second dimension, the third and so on
+# Joe and Kuo (2008), SIAM Journal on Scientific Computing 30(5) 2635, doi:10.1137/070709359: primitive polynomials and
+# first direction numbers of the second, third and further dimensions
 _DIRECTIONS = (
     (3, 1), (7, 1, 3), (11, 1, 3, 1), (13, 1, 1, 1), (19, 1, 1, 3, 3), (25, 1, 3, 5, 13), (37, 1, 1, 5, 5, 17),
     (41, 1, 1, 5, 5, 5), (47, 1, 1, 7, 11, 19), (55, 1, 1, 5, 1, 1), (59, 1, 1, 1, 3, 11), (61, 1, 3, 5, 5, 31),
@@ -18,25 +18,25 @@ _DIRECTIONS = (
     (185, 1, 3, 5, 3, 3, 13, 69), (191, 1, 1, 7, 13, 1, 19, 1), (193, 1, 3, 7, 5, 13, 19, 59),
     (203, 1, 1, 3, 9, 25, 29, 41), (211, 1, 3, 5, 13, 23, 1, 55), (213, 1, 3, 7, 3, 13, 59, 17),
 )  # fmt: skip
-MOST = len(_DIRECTIONS) + 1  # dimensions
+MOST = len(_DIRECTIONS) + 1  # largest number of dimensions
 
 
 def scrambled_sobol(dimensions: int, count: int, seed: int) -> FloatArray:
-    """Return points of the unit cube, of shape (count, dimensions); the count is a power of two."""
+    """Return points of the unit cube, shape (count, dimensions). The count must be a power of two."""
     random = np.random.default_rng(seed)
     shift = random.integers(2, size=(dimensions, _BITS), dtype=np.uint32) @ (2 ** np.arange(_BITS, dtype=np.uint32))
     lower = np.tril(random.integers(2, size=(dimensions, _BITS, _BITS), dtype=np.uint32))
     lower[:, range(_BITS), range(_BITS)] = 1
     numbers = np.array([_directions(dimension) for dimension in range(dimensions)])
     shifts = np.arange(_BITS)[::-1]
-    bits = numbers[:, :, None] >> shifts & 1  # dimension, number, bit from the highest on
-    # product of each number and a random lower triangular matrix of bits (Matousek 1998), modulo two
+    bits = numbers[:, :, None] >> shifts & 1  # axes: dimension, number, bit (highest bit first)
+    # product of the numbers and a random lower triangular matrix of bits (Matousek 1998), modulo two
     scrambled = ((bits @ lower.transpose(0, 2, 1).astype(np.int64) & 1) << shifts).sum(axis=2)
     points = np.empty((count, dimensions), dtype=np.int64)
     points[0] = shift
     for k in range(
         count.bit_length() - 1
-    ):  # Gray code: the second half is the reversed first half with one number added
+    ):  # Gray code: the second half is the reversed first half, with one number added
         points[1 << k : 2 << k] = points[: 1 << k][::-1] ^ scrambled[:, k]
     return points / 2.0**_BITS
 

@@ -36,45 +36,45 @@ def overturning_map(  # noqa: PLR0913 - users set every one of them
 ) -> "xr.Dataset":
     """Return the outcome of a body over two parameters.
 
-    Restitution models are evaluated for every body on the axes. A pulse or record is stretched in time exactly,
-    without resampling.
+    Restitution models are evaluated for every body on the axes. A pulse or record is stretched exactly in time, without
+    resampling.
 
     Parameters
     ----------
     body : Body
-        The body; axes replace its values.
+        The body. Axes replace its values.
     motion : GroundMotion, Pulse or mapping
-        The motion, or its components as for `simulate`; axes replace its values.
+        The motion, or its components as for `simulate`. Axes replace its values.
     x, y : Axis or (str, array_like)
         Axes, or their names and values: frequency_ratio, amplitude_ratio, scale, pga [m/s2], pgv [m/s], period [s],
-        duration [s], semi_diagonal [m], slenderness_ratio, slenderness_angle [rad], width [m], height [m],
-        restitution, friction, initial_rotation [rad], initial_angular_velocity [rad/s]; in space azimuth [rad].
+        duration [s], semi_diagonal [m], slenderness_ratio, slenderness_angle [rad], width [m], height [m], restitution,
+        friction, initial_rotation [rad], initial_angular_velocity [rad/s]; for 3D bodies azimuth [rad].
     restitution : as for `simulate`
         Ignored if restitution is an axis.
     gravity : float
         Acceleration of gravity [m/s2].
     threads : int, optional
-        Threads of the fast engine; the results do not depend on them.
+        Number of threads of the fast engine. The results do not depend on this number.
     progress : callable, optional
-        Called with the number of histories done since the last call.
+        Function called with the number of histories finished since the last call.
     refine : int, optional
-        Number of refinements along the boundaries between modes; each one halves the spacing; see `refined_map`.
+        Number of refinements along the boundaries between modes. A refinement halves the spacing, see `refined_map`.
     **settings
-        Fields of `Settings`, and ``engine``; with ``friction`` (or as an axis) the body may slide, hop and fly, and
-        the restitution may be None, as for `simulate`.
+        Fields of `Settings`, and ``engine``. With ``friction`` as a setting or an axis, the body may slide, hop and
+        fly, and the restitution may be None, as for `simulate`.
 
     Returns
     -------
     xarray.Dataset
-        Over the two axes (y first): outcome, mode, peak_rotation, peak_ratio, impacts, side, overturning_time,
-        status, error, with units. With `refine` also ``refined_mode`` and ``refined_peak_ratio`` over ``point``, all
-        computed points, with ``refined_x`` and ``refined_y``. A cell that could not be computed has mode -3 and a
-        status with the reason; it does not affect other cells.
+        Dataset over the two axes (y first): outcome, mode, peak_rotation, peak_ratio, impacts, side, overturning_time,
+        status, error, with units. With `refine`, the dataset also contains ``refined_mode``, ``refined_peak_ratio``,
+        ``refined_x`` and ``refined_y`` over ``point``, for all computed points. A cell that could not be computed has
+        mode -3 and a status with the reason. It does not affect other cells.
 
     Raises
     ------
     InvalidValueError
-        If a value is outside its range, or the axes do not fit the body, the motion or each other.
+        If a value is outside its range, or if the axes do not fit the body, the motion or each other.
     MissingExtraError
         If xarray is not installed.
 
@@ -96,10 +96,10 @@ def overturning_map(  # noqa: PLR0913 - users set every one of them
 
 @dataclass(frozen=True, eq=False)
 class MapArrays:
-    """An overturning map as arrays; a dataset is created only for return or export."""
+    """An overturning map as arrays. A dataset is created only for return or export."""
 
     axes: tuple[Axis, Axis]  # x, y
-    variables: dict[str, np.ndarray]  # results over y and x; over the points for names with prefix refined_
+    variables: dict[str, np.ndarray]  # results over y and x; results with the prefix refined_ over the points
     attributes: dict[str, Any]  # provenance of the dataset
 
     def __getitem__(self, name: str) -> np.ndarray:
@@ -132,7 +132,7 @@ class MapArrays:
 def map_arrays(
     *subject: Any, progress: Callable[[int], None] | None = None, refine: int | None = None, **options: Any
 ) -> MapArrays:
-    """Return an overturning map as arrays; parameters as for `overturning_map`, in the order of `Plane.of`."""
+    """Return an overturning map as arrays. Parameters are those of `overturning_map`, in the order of `Plane.of`."""
     plane = Plane.of(*subject, **options)
     results, work = plane.answers(*plane.mesh(), progress=progress)
     shape = (plane.y.values.size, plane.x.values.size)

@@ -1,4 +1,4 @@
-"""Rocking spectra: peak rotation of blocks over their size, for slenderness angles and motions."""
+"""Rocking spectra: peak rotation of blocks over the size of the blocks, for slenderness angles and motions."""
 
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
@@ -38,18 +38,18 @@ def rocking_spectrum(
 ) -> "xr.Dataset":
     """Return the peak rotation of blocks under motions.
 
-    For other bodies, plane or 3D, use a map over ``semi_diagonal``.
+    For other plane or 3D bodies, use a map over ``semi_diagonal``.
 
     Parameters
     ----------
     motions : GroundMotion, Pulse or mapping, or a sequence of them
-        All records or all pulses; components along x and z as for `simulate`.
+        Either records only or pulses only, with components along x and z as for `simulate`.
     slenderness_angles : array_like
-        alpha, between 0 and pi/2 [rad].
+        Slenderness angles alpha, between 0 and pi/2 [rad].
     periods : array_like
-        2 pi / p [s]; p^2 = 3 g / (4 R) defines the size of a block.
+        Periods 2 pi / p [s]. The size R of a block follows from p^2 = 3 g / (4 R).
     restitution : as for `simulate`
-        Evaluated for every block.
+        Restitution, which is evaluated for every block.
     gravity : float
         Acceleration of gravity [m/s2].
     threads : int, optional
@@ -62,9 +62,9 @@ def rocking_spectrum(
     Returns
     -------
     xarray.Dataset
-        Over ``motion, slenderness_angle, period``: outcome, mode, peak_rotation, peak_ratio and more, with units;
-        coordinates ``semi_diagonal`` [m] and ``coefficient`` of restitution [-], which is missing for a law with a
-        coefficient per impact. The peak of an overturned block is pi/2.
+        Dataset over ``motion, slenderness_angle, period``: outcome, mode, peak_rotation, peak_ratio and more, with
+        units. Coordinates are ``semi_diagonal`` [m] and ``coefficient`` of restitution [-], which is missing for a law
+        with a coefficient per impact. The peak of an overturned block is pi/2.
 
     Raises
     ------
@@ -108,9 +108,9 @@ def spectrum_study(
     product_of: Callable[[list[Block]], tuple[Product, dict[str, Any]]], motions: MotionSet, angles: FloatArray,
     times: FloatArray, *, gravity: float, scale: float, restitutions: Sequence[str] = (),
 ) -> Study:  # fmt: skip
-    """Return the study over motion, slenderness angle and period, and several restitutions.
+    """Return the study over motion, slenderness angle, period and, if several, restitution.
 
-    product_of: returns the histories of blocks, and attributes.
+    `product_of` is a function that returns the histories of blocks, and attributes.
     """
     sizes = 0.75 * gravity * (0.5 * times / np.pi) ** 2  # Eq. 180
     product, attributes = product_of(
@@ -126,7 +126,7 @@ def spectrum_study(
     if len(restitutions) > 1:
         dims["restitution"] = len(restitutions)
         coordinates["restitution"] = labels_along("restitution", restitutions, "restitution")
-    # no single coefficient exists for a law with a coefficient per impact
+    # a law with a coefficient per impact has no single coefficient
     coefficient = np.where(isinstance(product.law, ConstantRestitution), product.sides["r_right"], np.nan)
     coefficient = coefficient.reshape([*dims.values()][1:])
     coordinates["coefficient"] = Column(coefficient, "1", "coefficient of restitution", dims=tuple(dims)[1:])

@@ -1,4 +1,4 @@
-"""Adaptive grid between the values of two axes, refined only along changes of the mode."""
+"""Adaptive grid between the values of two axes. It is refined only along changes of the mode."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ from rocking.studies.question import Case, Question
 
 @dataclass(frozen=True)
 class Plane:
-    """A question and two axes along which it varies."""
+    """A question, and two axes along which the question varies."""
 
     question: Question  # body, motion, restitution and settings
     x: Axis  # x, y: the axes
@@ -39,7 +39,7 @@ class Plane:
     def of(
         cls, body: Any, motion: Any, x: Any, y: Any, restitution: Any = DEFAULT_RESTITUTION, **options: Any
     ) -> "Plane":
-        """Return a plane from user input; options: gravity [m/s2], threads, engine and fields of `Settings`."""
+        """Return a plane from user input. Options are gravity [m/s2], threads, engine and fields of `Settings`."""
         threads, engine = options.pop("threads", None), options.pop("engine", "auto")
         axes = axis_of(x), axis_of(y)
         options |= friction_beside(axes, options.get("friction"))
@@ -54,7 +54,7 @@ class Plane:
         return attributes
 
     def case(self, x: FloatArray, y: FloatArray) -> Case:
-        """Return the variations at points: bodies first, then restitution, time, amplitude and velocity."""
+        """Return the variations at points. Bodies are set first, then restitution, time, amplitude and velocity."""
         case = Case.of(self.question, x.size)
         steps = sorted([(self.x, x), (self.y, y)], key=lambda step: step[0].stage)
         for axis, values in steps:
@@ -74,20 +74,20 @@ class Plane:
         return self.question.run(case.values, case.stretch, stream, progress)
 
     def mesh(self) -> tuple[FloatArray, FloatArray]:
-        """Return the coordinates of all pairs of values, those of x varying fastest."""
+        """Return the coordinates of all pairs of values. The values of x vary fastest."""
         x, y = np.meshgrid(self.x.values, self.y.values)
         return x.ravel(), y.ravel()
 
 
-MOST_LEVELS = 12  # spacing ratio 4096; for a finer boundary use bisection
+MOST_LEVELS = 12  # spacing ratio 4096; for a finer boundary, use bisection
 Label = Callable[[IntArray], Any]
 
-# number of cells processed together: intermediate arrays need several times the memory of the results
+# number of cells processed together; intermediate arrays need several times the memory of the results
 _PIECE = 1 << 17
 
 
 class AdaptiveGrid:
-    """Points between the values of two axes, numbered in steps of the finest level, with their results."""
+    """Points between the values of two axes, with results. Points are numbered in steps of the finest level."""
 
     def __init__(self, plane: Plane, levels: int, progress: Callable[[int], None] | None = None) -> None:
         levels = checks.whole("levels of refinement", levels, 0, MOST_LEVELS)
@@ -102,7 +102,7 @@ class AdaptiveGrid:
         self.peaks: FloatArray = np.empty(0)
 
     def coordinates(self, i: IntArray, j: IntArray) -> tuple[FloatArray, FloatArray]:
-        """Return the coordinates of grid points; bit-exact for the values of the axes."""
+        """Return the coordinates of grid points. They are bit-exact for the values of the axes."""
         return self._between(self.plane.x, i), self._between(self.plane.y, j)
 
     def _between(self, axis: Axis, indices: IntArray) -> FloatArray:
@@ -116,7 +116,7 @@ class AdaptiveGrid:
         return np.asarray((j[:, None] * self.columns + i).ravel())
 
     def compute(self, keys: IntArray) -> None:
-        """Compute the unknown ones of the points, in one batch."""
+        """Compute the unknown points in one batch."""
         new = absent(keys, self.keys)
         if not new.size:
             return
@@ -136,7 +136,7 @@ class AdaptiveGrid:
         self.peaks = np.insert(self.peaks, positions, peaks)
 
     def modes_at(self, i: IntArray, j: IntArray) -> IntArray:
-        """Return the modes of points; unknown ones are computed."""
+        """Return the modes of points. Unknown modes are computed."""
         keys = j * self.columns + i
         self.compute(keys.ravel())
         return np.asarray(self.modes[np.searchsorted(self.keys, keys)])
@@ -146,7 +146,10 @@ class AdaptiveGrid:
         return self.modes_at(*_corners(i, j, step))
 
     def finest(self, label: Label) -> tuple[IntArray, IntArray]:
-        """Subdivide cells with different corners, level by level; return columns and rows of the last such cells."""
+        """Subdivide cells with different corners, level by level.
+
+        Return columns and rows of the finest of these cells.
+        """
         self.compute(self.base())
         across, up = self.plane.x.values.size - 1, self.plane.y.values.size - 1
         j, i = (index * self.step for index in np.divmod(np.arange(across * up), max(across, 1)))
@@ -159,7 +162,7 @@ class AdaptiveGrid:
         return i, j
 
     def _differing(self, label: Label, i: IntArray, j: IntArray, step: int) -> tuple[IntArray, IntArray]:
-        """Return the cells with different corners; unknown corners are computed in one batch."""
+        """Return the cells with different corners. Unknown corners are computed in one batch."""
         pieces = [slice(first, first + _PIECE) for first in range(0, i.size, _PIECE)]
         new, mixed = [np.empty(0, np.int64)], [np.empty(0, np.bool_)]
         for piece in pieces:
@@ -174,7 +177,7 @@ class AdaptiveGrid:
 
 
 def absent(keys: IntArray, existing: IntArray) -> IntArray:
-    """Return the keys that are not among existing ones: `numpy.setdiff1d` for sorted existing keys."""
+    """Return the keys that are not among the existing keys (`numpy.setdiff1d` for sorted existing keys)."""
     if existing.size:
         places = np.searchsorted(existing, keys)
         keys = keys[existing[np.minimum(places, existing.size - 1)] != keys]
@@ -194,7 +197,7 @@ def _corners(i: IntArray, j: IntArray, step: int) -> tuple[IntArray, IntArray]:
 
 
 def verdicts(modes: IntArray) -> BoolArray:
-    """Return True for modes of overturning; callers must exclude failed points.
+    """Return True for modes of overturning. Callers must exclude failed points.
 
     >>> verdicts(np.array([-3, -2, -1, 0, 2])).tolist()
     [False, False, False, True, True]
@@ -204,7 +207,7 @@ def verdicts(modes: IntArray) -> BoolArray:
 
 @dataclass(frozen=True, eq=False)
 class RefinedMap:
-    """Points of a map that has been refined along the boundaries between modes."""
+    """Points of a map after refinement along the boundaries between modes."""
 
     x: FloatArray  # x, y: coordinates of all points, in the units of the axes
     y: FloatArray
@@ -214,8 +217,8 @@ class RefinedMap:
 
 
 def refined(grid: AdaptiveGrid, modes: IntArray, peaks: FloatArray) -> tuple[RefinedMap, tuple[IntArray, IntArray]]:
-    """Return the refinement of a computed map on a new grid, and its finest cells with different corners."""
-    # the points of the map come first, in their order; `outlines` starts from the cells with different corners
+    """Return the refinement of a computed map on a new grid, and the finest cells with different corners."""
+    # the points of the map are first, in their order; `outlines` starts from the cells with different corners
     first = grid.base()
     grid.learn(first, np.asarray(modes, dtype=np.int64).ravel(), np.asarray(peaks, dtype=np.float64).ravel())
     cells = grid.finest(lambda modes: modes)
@@ -253,14 +256,14 @@ def refined_map(
     body, motion, x, y, restitution
         As for `rocking.overturning_map`; the restitution must not be random.
     levels : int
-        Number of refinements; each one halves the spacing [-].
+        Number of refinements [-]. A refinement halves the spacing.
     gravity, progress, **options
         As for `rocking.overturning_map`.
 
     Returns
     -------
     RefinedMap
-        All points; those of the map first, with x varying fastest.
+        All points. The points of the map are first, with x varying fastest.
     """
     plane = Plane.of(body, motion, x, y, restitution, gravity=gravity, **options)
     results, _ = plane.answers(*plane.mesh(), progress=progress)

@@ -1,4 +1,4 @@
-"""Search of amplitudes of many bodies: samples, bisection of suspicious intervals, brackets; one batch per round."""
+"""Search of amplitudes of many bodies: samples, bisection of suspicious intervals, brackets. A round is one batch."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields
@@ -11,9 +11,9 @@ from rocking.outcome import lost_contact
 from rocking.studies.question import FAILED
 
 Run = Callable[[dict[str, FloatArray], IntArray], Arrays]
-"""Function of sides, scales and body indices; returns mode, side, peak_ratio and overturning_time."""
+"""Function of sides, scales and body indices that returns mode, side, peak_ratio and overturning_time."""
 
-# number of bisections to neighbouring doubles, and relative width at which a hunt ends
+# number of bisections to neighbouring float64 numbers, and relative width at which a hunt ends
 _MOST_ROUNDS, _GIVEN_UP = 70, 1e-9
 
 
@@ -24,10 +24,10 @@ class Samples:
     body: IntArray  # index of the body
     scale: FloatArray  # factor on the motion [-]
     mode: IntArray  # mode of the history
-    side: IntArray  # side to which it overturned
+    side: IntArray  # side to which the body overturned
     peak: FloatArray  # peak rotation over the slenderness angle [-]
-    time: FloatArray  # time of overturning, NaN without overturning [s]
-    lost: FloatArray  # 1 for a tensile contact force, NaN if not computed [-]
+    time: FloatArray  # time of overturning [s]; NaN without overturning
+    lost: FloatArray  # 1 for a tensile contact force [-]; NaN if not computed
 
     def joined(self, other: "Samples") -> "Samples":
         """Return both sets of samples, sorted."""
@@ -59,7 +59,7 @@ class ScaleBrackets:
 
     body: IntArray  # index of the body
     ends: FloatArray  # scales below and above [-]; shape (n, 2)
-    modes: IntArray  # modes there; shape (n, 2)
+    modes: IntArray  # modes at these scales; shape (n, 2)
 
     @classmethod
     def between(cls, samples: Samples, changes: BoolArray) -> "ScaleBrackets":
@@ -69,7 +69,7 @@ class ScaleBrackets:
         return cls(samples.body[low], ends, np.stack([samples.mode[low], samples.mode[high]], axis=1))
 
     def wide(self, tolerance: float) -> IntArray:
-        """Return the indices of brackets wider than a relative width [-]."""
+        """Return the indices of brackets that are wider than a relative width [-]."""
         (low, high), middle = self.ends.T, self.ends.mean(axis=1)
         return np.flatnonzero((high - low > tolerance * high) & (middle > low) & (middle < high))  # Eq. 184
 
@@ -80,14 +80,14 @@ class ScaleBrackets:
 
 
 class AmplitudeSearch:
-    """Histories of bodies at an increasing number of scales, each body under one motion."""
+    """Histories of bodies at an increasing number of scales. A body has one motion."""
 
     def __init__(self, run: Run, sides: dict[str, FloatArray], scales: FloatArray) -> None:
         self.run, self.sides = run, sides
         self.samples = self.compute(np.repeat(np.arange(len(scales)), scales.shape[1]), scales.ravel())
 
     def compute(self, body: IntArray, scale: FloatArray) -> Samples:
-        """Return histories at scale factors [-]; the random numbers of a body do not depend on the factor."""
+        """Return histories at scale factors [-]. The random numbers of a body do not depend on the factor."""
         values = {name: array[body] for name, array in self.sides.items()}
         results = self.run({**values, "scale": scale}, body)
         names = ("mode", "side", "peak_ratio", "overturning_time")
@@ -103,8 +103,8 @@ class AmplitudeSearch:
 
     def hunt(self) -> None:
         """Search scales without overturning between neighbours with different modes of overturning."""
-        # each pair is bisected between its two modes of overturning until a scale without overturning is found; a third
-        # mode replaces the nearest one
+        # a pair is bisected between its two modes of overturning until a scale without overturning appears; a third
+        # mode replaces the nearest mode
         s = self.samples.good
         ways = 2 * s.mode + (s.side > 0)
         changes = s.same_body & s.falls[1:] & s.falls[:-1] & (ways[1:] != ways[:-1])
@@ -121,8 +121,8 @@ class AmplitudeSearch:
             pairs.move(rows, 2 * middle.mode + (middle.side > 0) != lower[rows], middle)
 
     def brackets(self, tolerance: float) -> ScaleBrackets:
-        """Return brackets of all changes of verdict, bisected together to a relative width [-]."""
-        # a bracket is not halved if the simulation at its middle failed
+        """Return brackets of all changes of verdict. They are bisected together to a relative width [-]."""
+        # a bracket is not bisected if the simulation at its middle failed
         s = self.samples.good
         brackets = ScaleBrackets.between(s, s.same_body & (s.falls[1:] != s.falls[:-1]))
         stuck = np.zeros(brackets.body.size, dtype=np.bool_)
@@ -141,8 +141,8 @@ class AmplitudeSearch:
 
 def suspicious(s: Samples) -> BoolArray:
     """Return True for intervals between equal verdicts that may contain another verdict."""
-    # where the extrapolated peak without overturning exceeds 1; next to a largest peak without overturning; next to a
-    # longest time of overturning
+    # intervals where the extrapolated peak without overturning exceeds 1, next to a largest peak without overturning,
+    # or next to a longest time of overturning
     same = s.same_body
     peak = np.where(s.falls, np.nan, s.peak)
     steps = np.where(same, np.abs(np.diff(peak)), np.nan)
@@ -157,18 +157,18 @@ def _beside_largest(values: FloatArray, same: BoolArray) -> BoolArray:
     with np.errstate(invalid="ignore"):
         rise, fall = same & (values[1:] > values[:-1]), same & (values[:-1] > values[1:])
         is_finite = same & np.isfinite(values[1:]) & np.isfinite(values[:-1])
-    left = np.append(True, rise | ~is_finite)  # no higher value on the left
+    left = np.append(True, rise | ~is_finite)  # True if there is no higher value on the left
     right = np.append(fall | ~is_finite, True)
     top = left & right & np.isfinite(values)
     return np.asarray(is_finite & (top[1:] | top[:-1]))
 
 
-# offsets of the points of each round, and number of rounds without a change that ends the search
+# offsets of the points by round, and number of rounds without a change after which the search ends
 _SHIFTS, _ENOUGH = (0.25, 0.75, 0.5, 0.125), 2
 
 
 def below_minimum(samples: Samples) -> dict[int, FloatArray]:
-    """Return the scales of each body up to the first with overturning, if it is not the lowest one."""
+    """Return the scales of the bodies up to the first scale with overturning, unless it is the lowest scale."""
     bodies, start = np.unique(samples.body, return_index=True)
     below = {}
     for body, first, last in zip(bodies.tolist(), start, np.append(start, samples.body.size)[1:], strict=True):
@@ -180,8 +180,9 @@ def below_minimum(samples: Samples) -> dict[int, FloatArray]:
 
 def search_below(scan: AmplitudeSearch, points: int) -> None:
     """Sample below the smallest overturning amplitude until it does not change."""
-    # The points of a round cover the range up to the first sample with overturning. A body is done after two
-    # consecutive rounds without overturning below the sample next to it, or after four rounds.
+    # The points of a round cover the range up to the first sample with overturning. A body is finished after two
+    # consecutive rounds without overturning below the sample next to the first sample with overturning, or after four
+    # rounds.
     unchanged: dict[int, int] = {}
     for shift in _SHIFTS:
         active = {

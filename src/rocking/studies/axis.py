@@ -1,4 +1,4 @@
-"""An axis of a map: a parameter of the body or the motion, its values, and its effect on a case."""
+"""An axis of a map: a parameter of body or motion, its values, and its effect on a case."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -18,29 +18,29 @@ from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Motion, Pulse, Ricker, Sinusoids
 from rocking.studies.question import Case, Question
 
-BODY, RESTITUTION, TIME, AMPLITUDE, VELOCITY = range(5)  # stages in which axes are applied, in this order
+BODY, RESTITUTION, TIME, AMPLITUDE, VELOCITY = range(5)  # stages of application of axes, in this order
 
 
 @dataclass(frozen=True, eq=False)
 class Axis:
-    """A parameter of a map; a call with values returns the axis with these values.
+    """A parameter of a map. A call with values returns the axis with these values.
 
-    Values increase, are finite and within the range of the axis.
+    Values increase, are finite, and are within the range of the axis.
     """
 
     name: str
     unit: str
     meaning: str
-    sets: str  # parameter that the axis sets; two axes of a map must set different parameters
+    sets: str  # name of the parameter; two axes of a map must set different parameters
     stage: int  # order of application
-    # changes of a case for the values of its variations
+    # function that changes a case for the values of its variations
     changes: Callable[[Case, FloatArray], dict[str, Any]] = field(repr=False)
-    # check that refuses a question without this parameter
+    # check that raises an error for a question without this parameter
     check_kind: Callable[["Axis", Question], object] | None = field(default=None, repr=False)
     low: float = 0.0
     high: float = 1e9
     low_is_allowed: bool = False
-    usual: tuple[float, float] = (1.0, 2.0)  # default first and last value of a form
+    usual: tuple[float, float] = (1.0, 2.0)  # default first and last value in a form
     values: FloatArray = field(default_factory=lambda: np.empty(0))
 
     def __call__(self, values: Any) -> "Axis":
@@ -71,15 +71,15 @@ class Axis:
         return replace(self, values=row)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickle name and values: functions cannot be pickled."""
+        """Pickle name and values, because functions cannot be pickled."""
         return (axis_of, ((self.name, self.values),)) if self.values.size else (_without_values, (self.name,))
 
     def applied(self, case: Case, values: FloatArray) -> Case:
-        """Return a case with this parameter set to a value for each variation."""
+        """Return a case in which this parameter has a value for every variation."""
         return replace(case, **self.changes(case, values))
 
     def check(self, question: Question) -> None:
-        """Refuse a question without this parameter."""
+        """Raise an error for a question without this parameter."""
         if self.stage == TIME:
             question.check_stretching(self.name)
         if self.stage in {AMPLITUDE, VELOCITY} and not question.motion.peak > 0.0:
@@ -90,7 +90,7 @@ class Axis:
             self.check_kind(self, question)
 
     def check_beside(self, other: "Axis") -> None:
-        """Refuse another axis with incompatible values."""
+        """Raise an error for another axis with incompatible values."""
         if self.name == "pgv" and other.name == "scale":
             _refuse_zero(other.values)
 
@@ -104,7 +104,7 @@ _SAMPLES = 4096
 
 
 def main_period(motion: Motion) -> float:
-    """Return the period T_p of a pulse, or of the first one in a sum of sinusoids [s]."""
+    """Return the period T_p of a pulse, or of the first term in a sum of sinusoids [s]."""
     motion = leading(motion)
     if isinstance(motion, Ricker):
         return motion.period
@@ -126,7 +126,7 @@ def peak_velocity(motion: Motion) -> float:
     signs = np.sign(motion.acceleration_inside(times))
     crossings = np.flatnonzero(signs[:-1] * signs[1:] < 0.0)
     low, high = times[crossings], times[crossings + 1]
-    for _ in range(60):  # to the zeros of the acceleration
+    for _ in range(60):  # bisection to the zeros of the acceleration
         middle = 0.5 * (low + high)
         left = np.sign(motion.acceleration_inside(middle)) == signs[crossings]
         low, high = np.where(left, middle, low), np.where(left, high, middle)
@@ -206,7 +206,7 @@ def _check_in_space(axis: Axis, question: Question) -> None:
 
 
 def varied_name(motion: Any, axes: Sequence[Axis]) -> str:
-    """Return the name of a motion without amplitude and period if axes vary them."""
+    """Return the name of a motion. Amplitude and period are omitted if axes vary them."""
     motion = leading(motion)
     if not isinstance(motion, Pulse):
         return str(motion.name)
@@ -216,7 +216,7 @@ def varied_name(motion: Any, axes: Sequence[Axis]) -> str:
 
 
 def friction_beside(axes: Sequence[Axis], stated: float | None) -> dict[str, float]:
-    """Return the friction of settings with an axis of friction; stated: their own friction [-]."""
+    """Return the friction setting if friction is an axis. `stated` is the stated friction [-]."""
     values = next((axis.values for axis in axes if axis.name == "friction"), None)
     if values is None:
         return {}
@@ -267,7 +267,7 @@ _ALL = (
         "semi_diagonal", "m", "semi-diagonal R; the body with all lengths scaled", "size", BODY,
         _geometry("semi_diagonal"), usual=(0.25, 4.0),
     ),
-    # of a block: a slenderness alone keeps the semi-diagonal, a width alone the height, a height alone the width
+    # for a block: slenderness alone keeps the semi-diagonal, width alone keeps the height, height alone keeps the width
     Axis(
         "slenderness_ratio", "1", "slenderness ratio h/b of the block", "slenderness", BODY, _slenderness_ratio,
         _check_block, usual=(2.0, 8.0),
@@ -311,7 +311,7 @@ def axes() -> dict[str, Axis]:
     Returns
     -------
     dict of str to Axis
-        Axes by name; a call with values gives an axis of a map.
+        Axes by name. A call with values gives an axis of a map.
 
     Examples
     --------
@@ -326,7 +326,7 @@ def _without_values(name: str) -> Axis:
 
 
 def axis_of(axis: Any) -> Axis:
-    """Return an axis with values, or the axis of a name and values."""
+    """Return an axis with values, from an axis or from a name and values."""
     if isinstance(axis, Axis):
         if not axis.values.size:
             raise InvalidValueError(

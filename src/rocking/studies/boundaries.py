@@ -19,7 +19,7 @@ from rocking.studies.question import FAILED
 
 Inside = Callable[[IntArray], BoolArray]
 
-# number of bisections to neighbouring doubles
+# number of bisections to neighbouring float64 numbers
 _MOST_ROUNDS = 60
 
 
@@ -27,9 +27,9 @@ _MOST_ROUNDS = 60
 class Polyline:
     """A polyline of the boundary of a region."""
 
-    # vertices x, y on edges of the grid, in the units of the axes; a closed polyline ends with its first vertex
+    # vertices x, y on edges of the grid, in units of the axes; the last vertex of a closed polyline is its first vertex
     points: FloatArray
-    # modes outside and inside the region at each vertex: -2 no uplift, -1 no overturning, n >= 0 overturned after n
+    # modes outside and inside the region at the vertices: -2 no uplift, -1 no overturning, n >= 0 overturned after n
     # impacts
     modes: IntArray
     region: str  # region inside: ``overturned``, or ``overturned after n impacts``
@@ -37,7 +37,7 @@ class Polyline:
 
     @property
     def closed(self) -> bool:
-        """True if the last vertex is the first one."""
+        """True if the last vertex is the first vertex."""
         return len(self.points) > 2 and bool((self.points[0] == self.points[-1]).all())
 
 
@@ -58,19 +58,20 @@ def boundary(  # noqa: PLR0913 - users set every one of them
     """Return the boundary of overturning in the plane of two parameters.
 
     The boundary crosses every edge of the grid with different ends once, at a point from bisection, and continues from
-    cell to cell. Two crossings of one edge are not detected: regions narrower than a cell may be missed, and a narrow
-    strip without overturning between two modes may appear in pieces. In a cell with opposite overturned corners (a
-    saddle) the centre is computed: if it overturns, the overturned corners are connected, else separated.
+    cell to cell. Two crossings of one edge are not detected. Therefore, regions narrower than a cell may be missed, and
+    a narrow strip without overturning between two modes may appear in pieces. In a cell with opposite overturned
+    corners (a saddle), the centre is computed. If the centre overturns, the overturned corners are connected, otherwise
+    they are separated.
 
     Parameters
     ----------
     body, motion, x, y, restitution
-        As for `rocking.overturning_map`; axes of at least two values, no random restitution.
+        As for `rocking.overturning_map`. Axes need at least two values, and the restitution must not be random.
     by : {"verdict", "mode"}
-        Outline all overturning, or overturning by the number of impacts; then the line between two modes appears
-        twice.
+        Outline all overturning ("verdict"), or overturning by the number of impacts ("mode"). With "mode", the line
+        between two modes appears twice.
     levels : int
-        Number of refinements of the grid; each one halves the spacing [-].
+        Number of refinements of the grid [-]. A refinement halves the spacing.
     tolerance : float
         Width of the last bracket along an edge, over the coordinate [-].
     gravity, progress, **options
@@ -97,12 +98,13 @@ def boundary(  # noqa: PLR0913 - users set every one of them
     plane = Plane.of(body, motion, x, y, restitution, gravity=gravity, **options)
     tolerance = checked(plane, by, tolerance)
     grid = AdaptiveGrid(plane, levels, progress)
-    # always refined by mode: a narrow strip without overturning lies between two modes before its corners show it
+    # always refined by mode, because a narrow strip without overturning is between two modes before corners reach the
+    # strip
     return outlines(grid, grid.finest(lambda modes: modes), by, tolerance)
 
 
 def checked(plane: Plane, by: str, tolerance: float) -> float:
-    """Check the options of a boundary; return the relative width of the last brackets [-]."""
+    """Check the options of a boundary. Return the relative width of the last brackets [-]."""
     if by not in {"verdict", "mode"}:
         raise InvalidValueError(parameter="by", allowed='"verdict" or "mode"', value=by)
     for axis in (plane.x, plane.y):
@@ -114,7 +116,7 @@ def checked(plane: Plane, by: str, tolerance: float) -> float:
 
 
 def outlines(grid: AdaptiveGrid, seeds: tuple[IntArray, IntArray], by: str, tolerance: float) -> list[Polyline]:
-    """Return the boundary on a refined grid, to a relative width [-]."""
+    """Return the boundary on a refined grid, exact to a relative width [-]."""
     if by == "verdict":
         return _outlined(grid, verdicts, "overturned", tolerance, seeds)
     polylines: list[Polyline] = []
@@ -127,7 +129,7 @@ def outlines(grid: AdaptiveGrid, seeds: tuple[IntArray, IntArray], by: str, tole
 def _outlined(
     grid: AdaptiveGrid, inside: Inside, region: str, tolerance: float, seeds: tuple[IntArray, IntArray]
 ) -> list[Polyline]:
-    """Return the outline of a region, from seed cells."""
+    """Return the outline of a region. The search starts from seed cells."""
     i, j = _cells_passed(grid, inside, seeds)
     if not i.size:
         return []
@@ -160,7 +162,7 @@ def _cells_passed(grid: AdaptiveGrid, inside: Inside, seeds: tuple[IntArray, Int
         i, j, crossed = i[passed], j[passed], crossed[passed]
         boundary_cells = merged(boundary_cells, j * grid.columns + i)
         cell, edge = np.nonzero(crossed)
-        right, up = np.array([(0, -1), (1, 0), (0, 1), (-1, 0)]).T  # to the cells below, right, above, left
+        right, up = np.array([(0, -1), (1, 0), (0, 1), (-1, 0)]).T  # steps to the cells below, right, above, left
         i, j = i[cell] + right[edge], j[cell] + up[edge]
         within = (i >= 0) & (j >= 0) & (i < grid.columns - 1) & (j < grid.rows - 1)
         new = absent(j[within] * grid.columns + i[within], visited)
@@ -175,7 +177,7 @@ def bisected(grid: AdaptiveGrid, inside: Inside, numbers: IntArray, tolerance: f
     ends = [(i, j), (i + ~upright, j + upright)]
     points = np.stack([np.stack(grid.coordinates(*end), axis=1) for end in ends], axis=1)
     modes = np.stack([grid.modes_at(*end) for end in ends], axis=1)
-    swap = inside(modes[:, 0])  # outside first, inside second
+    swap = inside(modes[:, 0])  # the end outside is first, the end inside is second
     points[swap], modes[swap] = points[swap][:, ::-1], modes[swap][:, ::-1]
     along = np.where(upright, 1, 0)
     rows = np.arange(numbers.size)
@@ -201,15 +203,15 @@ def crossed_edges(inside: BoolArray) -> BoolArray:
 
 
 def edge_numbers(i: IntArray, j: IntArray, columns: int) -> IntArray:
-    """Return the indices of the edges of cells: twice that of the left or lower end, plus one if vertical."""
+    """Return the indices of the edges of cells: twice the index of the left or lower end, plus 1 if vertical."""
     lowest = 2 * (j * columns + i)
     return np.stack([lowest, lowest + 3, lowest + 2 * columns, lowest + 1], axis=1)
 
 
 def segments(inside: BoolArray, edges: IntArray, centre: BoolArray) -> IntArray:
-    """Return the segments of a boundary in each cell, as indices of the crossed edges at both ends."""
-    # the centre of a saddle, with opposite inside corners, decides: the inside corners are connected if the centre is
-    # inside, else the outside corners
+    """Return the segments of a boundary in the cells, as indices of the crossed edges at both ends."""
+    # in a saddle (opposite inside corners), the inside corners are connected if the centre is inside; otherwise the
+    # outside corners are connected
     crossed = crossed_edges(inside)
     count = crossed.sum(axis=1)
     plain = edges[count == 2][crossed[count == 2]].reshape(-1, 2)
@@ -222,7 +224,7 @@ def segments(inside: BoolArray, edges: IntArray, centre: BoolArray) -> IntArray:
 
 
 def chains(joined: IntArray) -> list[list[int]]:
-    """Return the polylines of segments: open ones first, closed ones with the first edge repeated at the end."""
+    """Return the polylines of segments, open polylines first. Closed polylines repeat the first edge at the end."""
     neighbours: dict[int, list[int]] = {}
     for a, b in joined.tolist():
         neighbours.setdefault(a, []).append(b)

@@ -1,4 +1,4 @@
-"""Histories of a study in a fixed order, in pieces that workers compute independently."""
+"""Histories of a study in a fixed order. Workers compute pieces of the histories independently."""
 
 import hashlib
 import json
@@ -27,17 +27,17 @@ _ROWS_AT_ONCE = 32768
 MOTIONS_AT_ONCE = 128  # number of generated motions prepared together
 
 MOTIONS_KEPT = 128 << 20
-"""Memory for motions kept for the next piece, if the histories of a motion are not consecutive [bytes]."""
+"""Memory for motions that are kept for the next piece if the histories of a motion are not consecutive [bytes]."""
 
-LARGEST_CHUNK = 1 << 22  # a chunk is kept in memory: 0.3 GB
+LARGEST_CHUNK = 1 << 22  # histories per chunk; a chunk in memory needs 0.3 GB
 
 
 @dataclass(frozen=True, eq=False)
 class Histories(ABC):
     """Independent histories, numbered 0 to count - 1.
 
-    Pieces can be computed anywhere, in any order: the result of a history depends on its index only. All fields can
-    be pickled.
+    Pieces can be computed on any machine and in any order, because the result of a history depends only on its index.
+    All fields can be pickled.
 
     Parameters
     ----------
@@ -63,22 +63,22 @@ class Histories(ABC):
 
     @property
     def together(self) -> int:
-        """Number of consecutive histories of one motion; multiples of this number are the best cuts."""
+        """Number of consecutive histories of one motion. Pieces should be multiples of this number."""
         return 1
 
     @property
     def columns(self) -> dict[str, Any]:
-        """Types of the results, by their names."""
+        """Data types of the results by name."""
         return RESULTS
 
     @property
     def parts(self) -> "tuple[Histories, ...]":
-        """Parts of joined histories, each with one law and engine; here one."""
+        """Parts of joined histories. A part has one law and engine; other histories have one part."""
         return (self,)
 
     @abstractmethod
     def rows(self, first: int, last: int) -> Rows:
-        """Return the inputs of the histories from a first up to but not including a last one.
+        """Return the inputs of the histories from `first` to `last` (excluded).
 
         Parameters
         ----------
@@ -88,17 +88,17 @@ class Histories(ABC):
         Returns
         -------
         Rows
-            The rows; the stream of a history is its index.
+            The rows. The stream of a history is its index.
         """
 
     @abstractmethod
     def content(self) -> dict[str, Any]:
-        """Return the identity of the histories except motions, law and settings, as plain values.
+        """Return the identity of the histories as plain values, except motions, law and settings.
 
         Returns
         -------
         dict
-            Numbers, texts, lists and dictionaries only; arrays as SHA-256.
+            Only numbers, texts, lists and dictionaries. Arrays are given by their SHA-256.
         """
 
     def description(self) -> dict[str, Any]:
@@ -107,7 +107,7 @@ class Histories(ABC):
         Returns
         -------
         dict
-            Studies with equal descriptions have equal results.
+            Plain values. Studies with equal descriptions have equal results.
         """
         return {
             "histories": type(self).__name__,
@@ -126,7 +126,7 @@ class Histories(ABC):
         Parameters
         ----------
         described : dict, optional
-            Their `description`, to avoid hashing every array again.
+            The `description` of the histories, which avoids hashing every array again.
 
         Returns
         -------
@@ -136,7 +136,7 @@ class Histories(ABC):
         Raises
         ------
         InvalidValueError
-            If the description contains other than plain values.
+            If the description contains values that are not plain.
         """
         content = self.description() if described is None else described
         try:
@@ -154,14 +154,14 @@ class Histories(ABC):
         Parameters
         ----------
         first, last : int
-            Indices: from the first up to but not including the last.
+            Indices of the first and the last history (excluded).
         threads : int, optional
             Threads of the fast engine; the results do not depend on them.
 
         Returns
         -------
         dict of str to ndarray
-            The keys of `columns`, one entry per history.
+            Results by the keys of `columns`, one entry per history.
 
         Raises
         ------
@@ -179,20 +179,23 @@ class Histories(ABC):
         return Batch(motions, self.law, self.settings, None, self.engine)
 
     def __getstate__(self) -> dict[str, Any]:
-        """Exclude the prepared motions: they are generated again when needed."""
+        """Exclude the prepared motions, which are generated again when needed."""
         return {name: value for name, value in self.__dict__.items() if name not in {"_batch", "_kept"}}
 
     @cached_property
     def _kept(self) -> dict[int, Segments]:
-        """Motions of earlier pieces, the oldest first."""
+        """Motions of earlier pieces, with the oldest first."""
         return {}
 
     def _forget(self) -> None:
-        """Remove the oldest motions; keep only the last one if the next piece needs others, or memory is short."""
+        """Remove the oldest motions.
+
+        Keep only the last motion if the next piece needs others, or if memory is short.
+        """
         scattered = self.together == 1 and self.count > len(self.motions)
         room = MOTIONS_KEPT if scattered else 0
         for number in list(self._kept)[-2::-1]:
-            segments = self._kept.get(number)  # common to the threads of a worker
+            segments = self._kept.get(number)  # all threads of a worker use these motions
             if segments is not None:
                 arrays = (segments.horizontal, segments.vertical)
                 room -= sum(array.nbytes for array in arrays if array is not None)
@@ -200,7 +203,7 @@ class Histories(ABC):
                 self._kept.pop(number, None)
 
     def _run_made(self, first: int, last: int, threads: int | None) -> Arrays:
-        """Run with motions that are generated for a few histories and removed afterwards."""
+        """Run with motions that are generated for a few histories and then removed."""
         results = empty_results(last - first)
         for start in range(first, last, _ROWS_AT_ONCE):
             rows = self.rows(start, min(start + _ROWS_AT_ONCE, last))
@@ -218,7 +221,7 @@ class Histories(ABC):
         return results
 
     def _prepared(self, numbers: list[int]) -> list[Segments]:
-        """Return motions from memory or generated; the newest are kept last."""
+        """Return motions from memory, or generate them. The newest motions are kept last."""
         motions = []
         for number in numbers:
             segments = self._kept.pop(number, None) or self.motions[number].segments()
@@ -229,7 +232,7 @@ class Histories(ABC):
 
 
 def checked_range(first: int, last: int, count: int) -> None:
-    """Refuse indices out of range."""
+    """Raise an error for indices out of range."""
     if not 0 <= first <= last <= count:
         raise InvalidValueError(
             "{parameter} must be within [0, {count}], got {first} to {last}", parameter="histories", count=count,
@@ -240,7 +243,7 @@ def checked_range(first: int, last: int, count: int) -> None:
 def results_of(
     histories: Histories, *, threads: int | None = None, progress: Callable[[int], None] | None = None
 ) -> Arrays:
-    """Return the results of all histories, computed in pieces with calls of progress."""
+    """Return the results of all histories. They are computed in pieces, with calls of `progress`."""
     check_progress(progress)
     results = empty_results(histories.count, histories.columns)
     for first in range(0, histories.count, PIECE):
@@ -263,7 +266,7 @@ class HistoryTable(Histories):
     motion : ndarray of int
         Index of the motion of each history.
     values : dict of str to ndarray
-        The keys of `batch.ROWS` [rad, rad/s, -, rad, rad/s], one entry per history.
+        Values by the keys of `batch.ROWS` [rad, rad/s, -, rad, rad/s], one entry per history.
     law, settings, engine
         As for `Histories`.
 
@@ -294,7 +297,7 @@ class HistoryTable(Histories):
         return Rows(values, self.motion[first:last], np.arange(first, last, dtype=np.int64))
 
     def content(self) -> dict[str, Any]:
-        """Return the hashes of the arrays; of friction and azimuth only if they are set."""
+        """Return the hashes of the arrays. Friction and azimuth are included only if they are set."""
         unset = {name for name in ("friction", "azimuth") if np.isnan(self.values[name]).all()}
         arrays = {name: array for name, array in self.values.items() if name not in unset}
         return {"motion": hash_of(self.motion)} | {name: hash_of(values) for name, values in arrays.items()}
@@ -302,16 +305,16 @@ class HistoryTable(Histories):
 
 @dataclass(frozen=True, eq=False)
 class Product(Histories):
-    """Every motion with every body, scale and restitution; the motion changes slowest, the restitution fastest.
+    """Every motion with every body, scale and restitution. The motion changes slowest, the restitution fastest.
 
     Parameters
     ----------
     motions : MotionSet
         The motions.
     sides : dict of str to ndarray, shape (bodies, restitutions) or (motions, bodies, restitutions)
-        For all motions, or per motion: alpha_right, alpha_left [rad], p_right, p_left [rad/s], r_right, r_left [-].
-        Optional: q_right, q_left (m R^2 / I_O) for the ground forces [-], and share_right, share_left, probability
-        fractions of a random law, default 1 [-].
+        Values for all motions, or per motion: alpha_right, alpha_left [rad], p_right, p_left [rad/s], r_right, r_left
+        [-]. Optional values are q_right, q_left (m R^2 / I_O) for the ground forces [-], and the probability fractions
+        share_right, share_left of a random law, default 1 [-].
     scales : ndarray, shape (scales,) or (motions, scales)
         Scale factors for all motions, or per motion [-].
     law, settings, engine
@@ -358,7 +361,7 @@ class Product(Histories):
 
     @property
     def together(self) -> int:
-        """Histories of each motion."""
+        """Number of histories per motion."""
         return self.count // len(self.motions)
 
     def rows(self, first: int, last: int) -> Rows:
@@ -378,9 +381,9 @@ class Product(Histories):
 
 @dataclass(frozen=True, eq=False)
 class JoinedHistories(Histories):
-    """Consecutive histories of several kinds: each part has its own law, engine and motions."""
+    """Consecutive histories of several kinds. Every part has its own law, engine and motions."""
 
-    joined: tuple[Histories, ...]  # parts with motions from the common set
+    joined: tuple[Histories, ...]  # parts, with motions from the common set
 
     @property
     def parts(self) -> tuple[Histories, ...]:
@@ -400,7 +403,7 @@ class JoinedHistories(Histories):
             first, last = first - histories.count, last - histories.count
 
     def rows(self, first: int, last: int) -> Rows:
-        """Return a range of the rows; their motions are those of the parts."""
+        """Return a range of the rows. The motions of the rows are the motions of the parts."""
         pieces = [histories.rows(low, high) for histories, low, high in self._within(first, last)]
         values = {name: np.concatenate([np.empty(0), *(piece.values[name] for piece in pieces)]) for name in ROWS}
         motion = np.concatenate([np.empty(0, np.int64), *(piece.motion for piece in pieces)])
@@ -414,12 +417,12 @@ class JoinedHistories(Histories):
             for name, values in histories.run(low, high, threads=threads).items():
                 results[name][done : done + high - low] = values
             done += high - low
-            if high == histories.count:  # keep the prepared motions of one part only
+            if high == histories.count:  # keep the prepared motions of only one part
                 histories.__dict__.pop("_batch", None)
         return results
 
     def content(self) -> dict[str, Any]:
-        """Return the number of parts, and the hash of their identity."""
+        """Return the number of parts and the hash of their identity."""
         parts = [
             {"count": item.count, "content": item.content(), "law": described_law(item.law)} | item.settings.identity
             for item in self.parts
@@ -430,12 +433,12 @@ class JoinedHistories(Histories):
 
 
 def _own(array: np.ndarray, original: object) -> np.ndarray:
-    """Return the array read-only, as a copy if it is the caller's: hashed arrays must not change."""
+    """Return a read-only array. An array of the caller is copied, because hashed arrays must not change."""
     mine = array.copy() if np.may_share_memory(array, np.asarray(original)) else array
     mine.setflags(write=False)
     return mine
 
 
 def described_law(law: ImpactLaw) -> dict[str, Any]:
-    """Return the identity of an impact law: its class and its content."""
+    """Return the identity of an impact law, which is its class and its content."""
     return {"law": type(law).__name__, "class": full_name(type(law)), "content": law.content()}

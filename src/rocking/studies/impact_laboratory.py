@@ -37,20 +37,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Laboratory:
-    """A homogeneous block on a bed of Kelvin-Voigt points: the start of a study."""
+    """A homogeneous block on a bed of Kelvin-Voigt points, from which studies start."""
 
     slenderness: float = 2.0  # h/b [-]
     width: float = 0.2  # width of the base [m]
     density: float = 2400.0  # density of the block [kg/m3]
-    points: int = 41  # contact points
+    points: int = 41  # number of contact points
     # sqrt(k / m) / (2 pi) of the bed [Hz]; not used with `modulus_over_thickness`
     frequency: float = 400.0
     damping: float = 1.0  # damping ratio zeta of the whole bed [-]
-    # elastic modulus of the layer over its thickness, per metre of depth of the block [Pa/m]
+    # elastic modulus of the layer divided by its thickness, per metre of depth of the block [Pa/m]
     modulus_over_thickness: float | None = None
     release: float = 0.5  # initial rotation over the slenderness angle [-]
-    friction: BaseFriction = field(default_factory=Sticking)  # by default the base cannot slide
-    profile: tuple[float, ...] = ()  # heights of the points over the base line, none for a flat base [m]
+    friction: BaseFriction = field(default_factory=Sticking)  # by default, the base cannot slide
+    profile: tuple[float, ...] = ()  # heights of the points above the base line [m]; empty for a flat base
     tolerance: float = 1e-9  # relative error of a step [-]
 
     def __post_init__(self) -> None:
@@ -70,7 +70,7 @@ class Laboratory:
 
     @property
     def layered(self) -> "Laboratory":
-        """The laboratory on a layer; default 1 GPa/m."""
+        """The laboratory on a layer, by default with 1 GPa/m."""
         return self if self.modulus_over_thickness is not None else self.but(modulus_over_thickness=1e9)
 
     @property
@@ -111,9 +111,10 @@ SHAPES: tuple[Shape, ...] = ("convex", "concave", "tilted", "random")
 
 
 def profile(shape: Shape, amplitude: float, points: int, *, seed: int = 0) -> tuple[float, ...]:
-    """Return heights of contact points over the base line, within an amplitude [m].
+    """Return heights of contact points above the base line [m], within an amplitude.
 
-    A convex or concave parabola, a slope with the new foot up, or independent uniform heights from the seed.
+    The shape is a convex or concave parabola, a slope with the new foot up, or independent uniform heights from the
+    seed.
 
     >>> profile("concave", 0.001, 3)
     (0.0, 0.001, 0.0)
@@ -134,7 +135,7 @@ def profile(shape: Shape, amplitude: float, points: int, *, seed: int = 0) -> tu
 
 
 def checked_integer(name: str, value: Any, minimum: int) -> int:
-    """Return a checked integer of at least the minimum.
+    """Return an integer. Raise an error if it is below the minimum.
 
     >>> checked_integer("points", 41.0, 2)
     41
@@ -148,22 +149,22 @@ def checked_integer(name: str, value: Any, minimum: int) -> int:
     return int(result)
 
 
-# parameters of studies: unit, and function that sets a value
+# parameters of studies, with unit and function that sets a value
 STUDIES: dict[str, tuple[str, Callable[..., Laboratory]]] = {
     "slenderness": ("1", lambda lab, x: lab.but(slenderness=x)),
     "points": ("1", lambda lab, x: lab.but(points=checked_integer("points", x, 2))),
     "damping": ("1", lambda lab, x: lab.but(damping=x)),
     "modulus_over_thickness": ("Pa/m", lambda lab, x: lab.but(modulus_over_thickness=x)),
     "friction": ("1", lambda lab, x: lab.but(friction=Coulomb(x))),
-    "release": ("1", lambda lab, x: lab.but(release=x)),  # sets the landing velocity
-    "density": ("kg/m3", lambda lab, x: lab.but(density=x)),  # on one layer: mass only, with constant size
-    "width": ("m", lambda lab, x: lab.but(width=x)),  # blocks of one shape and density on one layer
+    "release": ("1", lambda lab, x: lab.but(release=x)),  # determines the landing velocity
+    "density": ("kg/m3", lambda lab, x: lab.but(density=x)),  # on one layer, changes only the mass at constant size
+    "width": ("m", lambda lab, x: lab.but(width=x)),  # blocks of equal shape and density on one layer
     "amplitude": ("m", lambda lab, x, shape, seed=0: lab.but(profile=profile(shape, x, lab.points, seed=seed))),
     "seed": ("1", lambda lab, x, amplitude: lab.but(profile=profile("random", amplitude, lab.points, seed=x))),
 }
 _ON_A_LAYER = {"density", "width"}
 
-# long names of results; other names need none
+# long names of results; other results need no long name
 _WORDS = {
     "coefficient": "theta_dot after over theta_dot before, by the next peak",
     "coefficient_by_energy": "ratio of velocities by the energy at the end, including hops",
@@ -180,10 +181,10 @@ _WORDS = {
 def study(
     varied: str, values: Any, laboratory: Laboratory | None = None, *, threads: int = 1, **options: Any
 ) -> "xr.Dataset":
-    """Return the results for one varied parameter of `STUDIES`; NaN for failed impacts.
+    """Return the results for one varied parameter of `STUDIES`. Failed impacts are NaN.
 
-    Options: ``shape`` of uneven bases for ``"amplitude"``, with ``seed`` for random ones; ``amplitude`` of random bases
-    for ``"seed"``. Other studies have none.
+    Options of ``"amplitude"`` are ``shape`` of uneven bases and, for random shapes, ``seed``. The option of ``"seed"``
+    is ``amplitude`` of random bases. Other studies have no options.
 
     >>> study("slenderness", [2.0, 4.0]).coefficient.round(2).values.tolist()
     [0.84, 0.96]
@@ -217,7 +218,7 @@ def study(
 
 
 def _check_options(varied: str, options: Mapping[str, Any]) -> None:
-    """Refuse unknown options of a study, and missing required ones."""
+    """Raise an error for unknown options of a study, and for missing required options."""
     _, _, *parameters = inspect.signature(STUDIES[varied][1]).parameters.values()
     names = [option.name for option in parameters]
     for name in options:
@@ -250,9 +251,9 @@ def _labelled(
 
 
 def large_bodies(widths: Any, *, hollow: float = 1e-4, laboratory: Laboratory | None = None) -> dict[str, FloatArray]:
-    """Return r of blocks of one shape by width [m], on a flat and on a hollow base, and of KED."""
-    # on a flat base of one layer neither r nor KED depends on the size (`study` of the width); a constant length causes
-    # a size effect: here a hollow of fixed height [m] under the base
+    """Return r of blocks of equal shape by width [m], on a flat base, on a hollow base, and by KED."""
+    # on a flat base on one layer, neither r nor KED depends on the size (`study` of the width); a constant length
+    # causes a size effect, here a hollow of fixed height [m] under the base
     start = (laboratory or Laboratory()).layered
     row = np.atleast_1d(checks.positive_array("width", widths, "m"))
     beds = {"flat": start.but(profile=()), "hollow": start.but(profile=profile("concave", hollow, start.points))}
@@ -262,21 +263,22 @@ def large_bodies(widths: Any, *, hollow: float = 1e-4, laboratory: Laboratory | 
 
 @dataclass(frozen=True, eq=False)
 class Convergence:
-    """A sequence of coefficients with its orders of convergence."""
+    """A sequence of coefficients with orders of convergence."""
 
-    at: FloatArray  # contact intervals, or tolerances [-]
+    at: FloatArray  # numbers of contact intervals, or tolerances [-]
     coefficient: FloatArray  # coefficients of restitution [-]
     error: FloatArray  # distance from the limit [-]
-    order: FloatArray  # order of convergence between neighbours [-]
-    limit: float  # limit of r: extrapolated, or of the finest step [-]
+    order: FloatArray  # order of convergence between neighbouring values [-]
+    limit: float  # limit of r [-], extrapolated or from the finest step
 
 
 def points_convergence(
     counts: Sequence[int] = (11, 21, 41, 81, 161), *, slenderness: float = 2.0, limit: float | None = None
 ) -> Convergence:
-    """Return the convergence of the viscous bed with its points; each count doubles the number of intervals."""
-    # Dashpots without springs absorb an impact in one contact, so that no hop disturbs the order, near 2 for half
-    # weights at the ends. The limit is the exact r; default: extrapolated from the last two with order 2.
+    """Return the convergence of the viscous bed with its points. Every count doubles the number of intervals."""
+    # Dashpots without springs absorb an impact in one contact, so that no hop disturbs the order, which is near 2 for
+    # half weights at the ends. The limit is the exact r. By default, it is extrapolated from the last two values with
+    # order 2.
     intervals = np.array(counts, dtype=np.float64) - 1.0
     if intervals.size < 3 or not bool((intervals[1:] == 2.0 * intervals[:-1]).all()):
         raise InvalidValueError(
@@ -294,7 +296,10 @@ def points_convergence(
 
 
 def step_convergence(tolerances: Any = (1e-4, 1e-5, 1e-6, 1e-7), laboratory: Laboratory | None = None) -> Convergence:
-    """Return the convergence of r with falling tolerances of a step, against 1e-12; the order is a power of them."""
+    """Return the convergence of r with decreasing step tolerances, relative to 1e-12.
+
+    The order is a power of the tolerance.
+    """
     row = np.atleast_1d(checks.positive_array("tolerances", tolerances))
     start = laboratory or Laboratory()
     r = coefficients(start.but(tolerance=float(tolerance)) for tolerance in (*row, 1e-12))
@@ -317,9 +322,9 @@ def bed_speed_law(
     foot: Foot = "right",
     gravity: float = conventions.g,
 ) -> SpeedRestitution:
-    """Return r(speed) of a body on a bed of given frequency sqrt(k / m) / (2 pi) [Hz], for `simulate`.
+    """Return a law r(speed) for `simulate`, for a body on a bed of given frequency sqrt(k / m) / (2 pi) [Hz].
 
-    The hardness is v sqrt(k/m) / g with v = 2 w theta_dot; beyond the table r is constant.
+    The hardness is v sqrt(k/m) / g with v = 2 w theta_dot. Beyond the table, r is constant.
 
     >>> from rocking import Block
     >>> law = bed_speed_law(Block(width=0.2, height=0.4), 400.0)
@@ -335,14 +340,14 @@ def bed_speed_law(
 
 
 def impulse_position(coefficient: FloatArray, flatness: FloatArray, offset: FloatArray) -> FloatArray:
-    """Return the impulse position of a coefficient, from angular momentum about the position [-]."""
+    """Return the impulse position of a coefficient [-], from angular momentum about this position."""
     gyration = 1.0 / flatness - 1.0
     arm = gyration * (1.0 - coefficient) / (1.0 + offset + coefficient * (1.0 - offset))  # Eq. 4
     return np.asarray(arm + offset)
 
 
 def resolved(cases: FloatArray, points: int, *, threads: int = 1) -> FloatArray:
-    """Return coefficients of cases (flatness, offset, damping, hardness) from time integration, by the next peak."""
+    """Return coefficients of cases (flatness, offset, damping, hardness) by the next peak, from time integration."""
     impacts = [
         ScaledImpact(flatness, offset, points, damping, hardness)
         for flatness, offset, damping, hardness in cases.tolist()
@@ -351,7 +356,7 @@ def resolved(cases: FloatArray, points: int, *, threads: int = 1) -> FloatArray:
 
 
 def tabulated(*, threads: int = 1, progress: Callable[[int], None] | None = None) -> BedTable:
-    """Compute the table of the model `contact-bed`; takes minutes."""
+    """Compute the table of the model `contact-bed`. This takes minutes."""
     axes = nodes()
     shape = tuple(axis.size for axis in axes)
     cases = np.stack([axis.ravel() for axis in np.meshgrid(*axes, indexing="ij")], axis=1)
@@ -367,5 +372,5 @@ def tabulated(*, threads: int = 1, progress: Callable[[int], None] | None = None
 
 
 def stored(table: BedTable) -> np.ndarray[tuple[int, ...], np.dtype[np.int16]]:
-    """Return the stored positions: integer multiples of `bed_table.STEP`."""
+    """Return the stored positions as integer multiples of `bed_table.STEP`."""
     return np.asarray(np.rint(np.clip(table.positions, -3.9, 3.9) / STEP).astype(np.int16))

@@ -1,4 +1,4 @@
-"""Safe islands: regions of a map without overturning, surrounded by overturning or above it."""
+"""Safe islands: regions of a map without overturning, which are surrounded by overturning or above overturning."""
 
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -20,20 +20,22 @@ if TYPE_CHECKING:
 class Island:
     """A connected region without overturning that contains no point without uplift."""
 
-    label: int  # its number in `Islands.labels`, from 1
-    cells: int  # points of the map in it
-    area: float  # area in the units of the axes; each point covers half the distance to its neighbours
+    label: int  # number of the island in `Islands.labels`, from 1
+    cells: int  # number of points of the map in the island
+    area: float  # area in the units of the axes; a point covers half the distance to its neighbours
     x: tuple[float, float]  # x, y: smallest and largest coordinates
     y: tuple[float, float]
-    # True if overturning surrounds it; otherwise it reaches the edge of the map or a failed point
+    # True if overturning surrounds the island; otherwise the island reaches the edge of the map or a failed point
     enclosed: bool
-    # modes of overturning around it: between two modes a strip too thin for the grid may continue
+    # modes of overturning around the island; between two modes, a strip that is too thin for the grid may continue
     modes: tuple[int, ...]
-    still_rocking: int  # number of points with rocking at the end of the computation; later overturning is possible
+    still_rocking: (
+        int  # number of points with rocking at the end of the computation, where later overturning is possible
+    )
 
     @property
     def is_between_modes(self) -> bool:
-        """True if it lies between two modes of overturning."""
+        """True if the island is between two modes of overturning."""
         return self.enclosed and len(self.modes) > 1
 
 
@@ -41,7 +43,7 @@ class Island:
 class Islands:
     """All safe islands of a map."""
 
-    labels: IntArray  # number of the island at each point of the map; 0 for none
+    labels: IntArray  # number of the island at every point of the map; 0 outside islands
     islands: tuple[Island, ...]  # the largest first
     axes: tuple[str, str]  # names of the axes, x and y
 
@@ -49,7 +51,7 @@ class Islands:
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """Number of islands, definition, and undecided points, as sentences."""
+        """Number of islands, definition, and undecided points as sentences."""
         if not self.islands:
             return (Message.joined(["No safe islands.", self.definition]),)
         cells = sum(island.cells for island in self.islands)
@@ -87,15 +89,16 @@ class Islands:
 def safe_islands(overturning: "xr.Dataset | MapArrays", *, enclosed: bool = True) -> Islands:
     """Return the regions without overturning that are not connected to the region without uplift.
 
-    Diagonal points are neighbours, so that the grid does not divide an oblique strip.
+    Diagonal points are neighbours, so that the grid does not divide an inclined strip.
 
     Parameters
     ----------
     overturning : xarray.Dataset
         Result of `overturning_map`.
     enclosed : bool
-        Return only regions that overturning surrounds within the map. A strip without overturning separates two modes
-        of overturning; it may be thinner than the grid, which divides it (`Island.is_between_modes`).
+        If True, return only regions that overturning surrounds within the map. A strip without overturning separates
+        two modes of overturning. If the strip is thinner than the grid, the grid divides it
+        (`Island.is_between_modes`).
 
     Returns
     -------
@@ -105,7 +108,7 @@ def safe_islands(overturning: "xr.Dataset | MapArrays", *, enclosed: bool = True
     Raises
     ------
     InvalidValueError
-        If the dataset is no map.
+        If the dataset is not a map.
 
     Examples
     --------
@@ -123,13 +126,13 @@ def safe_islands(overturning: "xr.Dataset | MapArrays", *, enclosed: bool = True
     labels = connected((modes < 0) & (modes != FAILED))
     apart = np.arange(labels.max(initial=0) + 1) > 0
     apart[labels[modes == UNLIFTED]] = False
-    near = _grown(modes == FAILED, outside=True)  # on the edge of the map, or next to a failed point
+    near = _grown(modes == FAILED, outside=True)  # points on the edge of the map, or next to a failed point
     areas = np.outer(_lengths(y), _lengths(x))
     islands = []
     for label in np.flatnonzero(apart).tolist():
         mask = labels == label
         rows, columns = np.nonzero(mask)
-        free = not bool(near[mask].any())  # then all neighbours overturn
+        free = not bool(near[mask].any())  # all neighbours overturn in this case
         if free or not enclosed:
             ring = np.unique(modes[_grown(mask) & ~mask])
             spans = (float(x[columns.min()]), float(x[columns.max()])), (float(y[rows.min()]), float(y[rows.max()]))
@@ -142,8 +145,8 @@ def safe_islands(overturning: "xr.Dataset | MapArrays", *, enclosed: bool = True
 
 
 def connected(survived: BoolArray) -> IntArray:
-    """Return the region number of each point, from 1 in row order, 0 for none; diagonal points are connected."""
-    # equal to `scipy.ndimage.label`, whose import takes as long as a map of 6 by 6
+    """Return the region number of every point: from 1 in row order, 0 outside. Diagonal points are connected."""
+    # equal to `scipy.ndimage.label`, whose import takes as long as a map of 6 by 6 points
     steps = np.diff(survived.astype(np.int8), axis=1, prepend=0, append=0)
     row, first = np.nonzero(steps == 1)  # runs of survival along the rows
     last = np.nonzero(steps == -1)[1] - 1
@@ -154,7 +157,7 @@ def connected(survived: BoolArray) -> IntArray:
             root[run] = run = root[root[run]]
         return run
 
-    width = survived.shape[1] + 1  # runs of the previous row that touch: their ends lie within one column
+    width = survived.shape[1] + 1  # runs of the previous row that touch have ends within one column
     offsets = row * width
     low = np.searchsorted(offsets + last, offsets - width + first - 1)
     high = np.searchsorted(offsets + first, offsets - width + last + 1, side="right")
@@ -175,7 +178,7 @@ def _grown(mask: BoolArray, *, outside: bool = False) -> BoolArray:
 
 
 def safe_beyond_overturning(overturning: "xr.Dataset", along: str | None = None) -> "xr.DataArray":
-    """Return the points without overturning above a smaller value of one axis with overturning.
+    """Return the points without overturning for which a smaller value on one axis has overturning.
 
     Parameters
     ----------
@@ -187,12 +190,12 @@ def safe_beyond_overturning(overturning: "xr.Dataset", along: str | None = None)
     Returns
     -------
     xarray.DataArray
-        True for points without overturning above overturning.
+        True for points without overturning that are above overturning.
 
     Raises
     ------
     InvalidValueError
-        If the dataset is no map, or has no such axis.
+        If the dataset is not a map, or does not have this axis.
     """
     modes, _, _, axes = _read(overturning)
     along = axes[1] if along is None else checks.one_of("along", along, axes)
@@ -223,6 +226,6 @@ def _read(overturning: Any) -> tuple[IntArray, FloatArray, FloatArray, tuple[str
 
 
 def _lengths(values: FloatArray) -> FloatArray:
-    """Return the length covered by each value."""
+    """Return the lengths that the values cover."""
     middles = 0.5 * (values[1:] + values[:-1])
     return np.diff(np.concatenate([values[:1], middles, values[-1:]]))

@@ -1,4 +1,4 @@
-"""Histories of overturning maps in pieces, and their boundaries in rounds."""
+"""Histories of overturning maps in pieces, and boundaries of maps in rounds."""
 
 import math
 from contextlib import suppress
@@ -23,21 +23,21 @@ from rocking.studies.question import modes_of, peak_ratio, quickened
 from rocking.studies.study_plan import AdaptiveResult, Compute, DelegatedQuestion, Study
 from rocking.tables import PIECE, Column, Table, prefixed, text_array
 
-MOST_POINTS = 10_000_000  # largest number of points of a refined map: less than 2 GiB of memory
+MOST_POINTS = 10_000_000  # largest number of points of a refined map, which needs less than 2 GiB of memory
 _PROBES = 1024
-# later histories over edges and bisections of a line across a map
+# ratio of later histories to edges and bisections of a line across a map
 _EDGES = (2.0, 12.0)
 
 
 @dataclass(frozen=True, eq=False)
 class MapHistories(Histories):
-    """Every restitution over the plane of two axes; the restitution changes slowest, x fastest; not kept in memory.
+    """Every restitution over the plane of two axes. The restitution changes slowest, x fastest.
 
-    The engine uses the unstretched motion with faster bodies in place of a slower motion; `rescaled` converts the times
-    of the results to those of the map.
+    Histories are not kept in memory. Instead of a slower motion, the engine uses the unstretched motion with faster
+    bodies. `rescaled` converts the times of the results to the times of the map.
     """
 
-    planes: tuple[Plane, ...]  # by restitution, with equal axes
+    planes: tuple[Plane, ...]  # one plane per restitution, with equal axes
 
     @classmethod
     def of(cls, planes: list[Plane]) -> "MapHistories":
@@ -46,7 +46,7 @@ class MapHistories(Histories):
         options: dict[str, Any] = {"law": question.law, "settings": question.settings, "engine": question.engine}
         histories = cls(MotionList([question.motion]), tuple(planes), **options)
         for number, plane in enumerate(planes):
-            # a map without any possible body is refused; single cells without a body are not
+            # a map without any possible body raises an error, but single cells may have no body
             plane.case(*histories._points(histories._probes(number)))
         return histories
 
@@ -61,19 +61,19 @@ class MapHistories(Histories):
         return self.cells * len(self.planes)
 
     def rows(self, first: int, last: int) -> Rows:
-        """Return a range of the rows for the engine; NaN for impossible bodies."""
+        """Return a range of the rows for the engine. Impossible bodies are NaN."""
         numbers = np.arange(first, last, dtype=np.int64)
         values, stretch = self._values(numbers)
         return Rows.of(last - first, 0, numbers, **quickened(values, stretch))
 
     def rescaled(self, first: int, last: int, results: Arrays) -> Arrays:
-        """Return results with the times [s] and velocities [rad/s] of the stretched motions."""
+        """Return results whose times [s] and velocities [rad/s] are those of the stretched motions."""
         _, stretch = self._values(np.arange(first, last, dtype=np.int64))
         times = {name: results[name] * stretch for name in quantities.TIMES}
         return {**results, **times, "peak_velocity": results["peak_velocity"] / stretch}
 
     def content(self) -> dict[str, Any]:
-        """Return axes, body, restitution, and the hash of rows spread over the map."""
+        """Return axes, body, restitution, and the hash of rows that are spread over the map."""
         plane = self.planes[0]
         probes = [self._values(self._probes(k)) for k in range(len(self.planes))]
         tables = [np.stack([*(values[n] for n in sorted(values)), stretch]) for values, stretch in probes]
@@ -94,13 +94,13 @@ class MapHistories(Histories):
         return plane.x.values[i], plane.y.values[j]
 
     def _values(self, numbers: np.ndarray) -> tuple[dict[str, FloatArray], FloatArray]:
-        """Return the engine inputs of histories, and the stretch of their motion."""
+        """Return the engine inputs of histories, and the stretch factors of their motion."""
         values, stretch = {name: np.full(numbers.size, np.nan) for name in sides_of([None])}, np.ones(numbers.size)
         values["scale"] = np.ones(numbers.size)
         for k, plane in enumerate(self.planes):
             own = numbers // self.cells == k
             if own.any():
-                with suppress(InvalidValueError):  # none of these bodies is possible
+                with suppress(InvalidValueError):  # no error if none of these bodies is possible
                     case = plane.case(*self._points(numbers[own]))
                     stretch[own] = case.stretch
                     for name, row in case.values.items():
@@ -110,9 +110,9 @@ class MapHistories(Histories):
 
 @dataclass(frozen=True)
 class MapSearch:
-    """Rounds of a refined map: the map, its refinements, the bisections of its edges."""
+    """Rounds of a refined map: the map, its refinements, and the bisections of its edges."""
 
-    study: Study  # the map before refinement: the first round
+    study: Study  # first round: the map before refinement
     plane: Plane  # the question and its axes
     levels: int  # levels of refinement
     by: str  # "verdict" or "mode"
@@ -137,7 +137,7 @@ class MapSearch:
         return cls(study, planes[0], levels, by, tolerance)
 
     def __call__(self, compute: Compute) -> AdaptiveResult:
-        """Return a pair of `RefinedMap` and a list of `Polyline`, and tables of them."""
+        """Return a pair of `RefinedMap` and list of `Polyline`, and the tables of both."""
         modes, peaks = self._base(compute(self.study.histories))
         plane = Plane(DelegatedQuestion.of(self.plane.question, compute), self.plane.x, self.plane.y)
         lattice = AdaptiveGrid(plane, self.levels)
@@ -150,7 +150,8 @@ class MapSearch:
     def later(self, first: int) -> tuple[int, int]:
         """Return the usual range of the number of histories of later rounds.
 
-        A line across the map crosses edges of the finest level; each one is located and bisected to the tolerance.
+        A line across the map crosses edges of the finest level. Every crossed edge is located and bisected to the
+        tolerance.
         """
         edges = math.sqrt(first) * 2.0**self.levels
         histories = edges * (2.0 + max(0.0, -math.log2(self.tolerance * edges)))

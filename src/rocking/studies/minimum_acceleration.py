@@ -26,7 +26,7 @@ from rocking.studies.question import FAILED, Question
 
 Interval = tuple[float, float]
 
-_FEW = 3  # largest number of intervals printed separately
+_FEW = 3  # largest number of intervals that are printed separately
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -35,8 +35,8 @@ class Transitions:
 
     All intervals of amplitudes wider than `resolution` have been sampled. Narrower intervals are searched near peak
     rotations close to overturning, at maxima of the peak rotation and of the overturning time, and between modes of
-    overturning. This is a search, not a proof. Under a record narrower intervals are possible everywhere; below the
-    minimum the search continues to `resolution_below`.
+    overturning. This is a search, not a proof. Under a record, narrower intervals are possible at all amplitudes. Below
+    the minimum, the search continues to `resolution_below`.
     """
 
     acceleration: FloatArray  # peak ground accelerations of the transitions, increasing [m/s2]
@@ -44,18 +44,18 @@ class Transitions:
     scale: FloatArray  # scale factors of the motion [-]
     # modes below and above: -2 no uplift, -1 no overturning, n >= 0 overturned after n impacts
     modes: IntArray
-    width: FloatArray  # widths of the brackets; the transitions are their middles [m/s2]
+    width: FloatArray  # widths of the brackets, whose middles are the transitions [m/s2]
     min_pga: float  # min_pga, max_pga: range of the search [m/s2]
     max_pga: float
     # ground acceleration of uplift: g tan alpha, or g alpha in the linear equations [m/s2]
     uplift_acceleration: float
     resolution: float  # relative spacing of the first samples [-]
     starts_overturned: bool  # True if the smallest acceleration overturns
-    # samples, failed: numbers of histories, and of histories without a result; a bracket with a failed history stays
-    # wide
+    # samples, failed: number of histories, and number of histories without a result; a bracket with a failed history
+    # stays wide
     samples: int
     failed: int
-    # widest relative gap between samples below the minimum; NaN if there is no minimum [-]
+    # largest relative gap between samples below the minimum [-]; NaN if there is no minimum
     resolution_below: float = math.nan
     # 1 for histories with a tensile contact force, 0 for others, NaN without a result [-]
     lost_contact: FloatArray = field(default_factory=lambda: np.empty(0))
@@ -63,7 +63,7 @@ class Transitions:
     def __repr__(self) -> str:
         intervals = self.overturning_intervals
         falls = " and ".join(f"from {low:.4g} to {high:.4g}" for low, high in intervals[:_FEW])
-        if len(intervals) > _FEW:  # up to hundreds under a record
+        if len(intervals) > _FEW:  # there may be hundreds under a record
             falls = f"in {len(intervals)} intervals from {intervals[0][0]:.4g} to {intervals[-1][1]:.4g}"
         searched = (
             f"searched from {self.min_pga:.4g} to {self.max_pga:.4g} m/s2 with a resolution of {self.resolution:.2%}"
@@ -86,7 +86,7 @@ class Transitions:
     def minimum(self) -> float | None:
         """Smallest sampled overturning acceleration; under a record narrower intervals may lie below [m/s2].
 
-        None if no acceleration in the range overturns, or if the smallest one does.
+        None if no acceleration in the range overturns the body, or if the smallest acceleration does.
         """
         return None if self.starts_overturned or not len(self) else float(self.acceleration[0])
 
@@ -94,7 +94,7 @@ class Transitions:
     def certain(self) -> float | None:
         """Acceleration above which all samples overturn; under a record narrower gaps may lie above [m/s2].
 
-        None if the largest acceleration does not overturn.
+        None if the largest acceleration does not overturn the body.
         """
         if not len(self):
             return self.min_pga if self.starts_overturned else None
@@ -102,7 +102,7 @@ class Transitions:
 
     @property
     def safe_intervals(self) -> tuple[Interval, ...]:
-        """Intervals of the range without overturning, the first up to the minimum [m/s2]."""
+        """Intervals of the range without overturning [m/s2]. The first interval ends at the minimum."""
         return self._intervals(overturned=False)
 
     @property
@@ -117,7 +117,7 @@ class Transitions:
         return tuple(pair for pair, fall in zip(pairs, falls, strict=True) if fall == overturned)
 
 
-# range of the search over the acceleration of uplift; lower start with a vertical component
+# range of the search over the acceleration of uplift; the start is lower with a vertical component
 _FROM, _FROM_VERTICAL, _TO = 1.0, 0.1, 50.0
 _MOST_SAMPLES = 1_000_000
 
@@ -126,7 +126,7 @@ _MOST_SAMPLES = 1_000_000
 class Effort:
     """Density of the search."""
 
-    samples: int = 400  # first samples, in equal ratios [-]
+    samples: int = 400  # number of first samples, in equal ratios [-]
     bisections: int = 4  # number of bisections of suspicious intervals, from 0 to 12 [-]
     tolerance: float = 1e-12  # width of the last brackets over the acceleration [-]
 
@@ -138,14 +138,14 @@ class Effort:
 
 @dataclass(frozen=True)
 class Cases:
-    """Bodies of a common search, each under a motion."""
+    """Cases of a common search. A case is a body under a motion."""
 
-    sides: dict[str, FloatArray]  # sides of the bodies, as of `sides_of` [rad, rad/s, -]
+    sides: dict[str, FloatArray]  # sides of the bodies, as from `sides_of` [rad, rad/s, -]
     peak: FloatArray  # peak acceleration of the motion, by body [m/s2]
     uplift: FloatArray  # acceleration of uplift, by body [m/s2]
     low: FloatArray  # low, high: range of the search [m/s2]
     high: FloatArray
-    record: bool  # True for records, with possible narrow intervals below the minimum
+    record: bool  # True for records, under which narrow intervals below the minimum are possible
 
     @classmethod
     def of(
@@ -161,7 +161,7 @@ class Cases:
         angles = np.stack([sides["alpha_right"], sides["alpha_left"]])
         uplift_by_side = settings.gravity * (angles if settings.linear else np.tan(angles))  # Eq. 25
         uplift, record = uplift_by_side.min(axis=0), isinstance(motion, GroundMotion)
-        # other components may lift a 3D body before the scaled one
+        # other components may lift a 3D body before the scaled component does
         lower_start = not mechanics_of(settings).in_plane or getattr(motion, "vertical", None) is not None
         low, high = (_FROM_VERTICAL if lower_start else _FROM) * uplift, _TO * uplift_by_side.max(axis=0)
         if min_pga is not None:
@@ -188,12 +188,12 @@ class Cases:
         return cls(sides, **arrays, record=groups[0].record)
 
     def grid(self, samples: int) -> FloatArray:
-        """Return the first scale factors of each case, in equal ratios [-]."""
+        """Return the first scale factors of the cases, in equal ratios [-]."""
         return np.asarray(geometric(self.low, self.high, samples) / self.peak[:, None])  # Eq. 182
 
 
 def searched(cases: Cases, effort: Effort, run: Run) -> tuple[Transitions | None, ...]:
-    """Return the transitions of all cases, computed together; None for cases without a result."""
+    """Return the transitions of all cases, which are computed together. Cases without a result are None."""
     scan = AmplitudeSearch(run, cases.sides, cases.grid(effort.samples))
     if cases.record:
         search_below(scan, effort.samples)
@@ -258,8 +258,8 @@ def minimum_overturning_acceleration(
     """Return all peak accelerations at which overturning begins or ends.
 
     The motion is scaled over a range of amplitudes in equal ratios. Intervals that may contain narrow changes are
-    bisected several times, then all changes are bisected together. Under long records the changes may be interleaved
-    at all scales; the result contains only the sampled ones. Below the smallest overturning amplitude a record is
+    bisected several times. Then all changes are bisected together. Under long records, changes may be interleaved at
+    all scales, and the result contains only the sampled changes. Below the smallest overturning amplitude, a record is
     sampled in up to four more rounds, until two rounds do not change the minimum.
 
     Parameters
@@ -267,21 +267,21 @@ def minimum_overturning_acceleration(
     body : Body
         The body.
     motion : GroundMotion, Pulse or mapping
-        The motion, or its components as for `simulate`, of any amplitude above zero.
+        The motion, or its components as for `simulate`. Its amplitude must not be zero.
     restitution : as for `simulate`
-        A random restitution uses equal samples at every amplitude.
+        Restitution. A random restitution uses equal random numbers at all amplitudes.
     min_pga, max_pga : float, optional
-        Range of peak accelerations; default: 1 (0.1 with a vertical component) and 50 times the acceleration of uplift
-        [m/s2].
+        Range of peak accelerations [m/s2]. Default: 1 (0.1 with a vertical component) and 50 times the acceleration of
+        uplift.
     samples : int
-        Number of first samples, in equal ratios, and of samples of each round below the minimum. No interval wider
-        than their spacing is missed [-].
+        Number of first samples in equal ratios, and number of samples per round below the minimum [-]. No interval
+        wider than the spacing of the samples is missed.
     tolerance : float
-        Width of the last brackets over the acceleration; 0 for neighbouring doubles [-].
+        Width of the last brackets over the acceleration [-]. 0 means neighbouring float64 numbers.
     **options
         ``bisections`` (number of bisections of suspicious intervals, 0 to 12, default 4), ``gravity`` [m/s2],
-        ``threads``, ``progress`` (called with the number of histories done since the last call), ``engine`` and fields
-        of `Settings`.
+        ``threads``, ``progress`` (function called with the number of histories finished since the last call),
+        ``engine`` and fields of `Settings`.
 
     Returns
     -------
@@ -291,12 +291,12 @@ def minimum_overturning_acceleration(
     Raises
     ------
     InvalidValueError
-        If a value is outside its range, or the motion is zero.
+        If a value is outside its range, or if the motion is zero.
 
     Examples
     --------
-    A full sine of three times the frequency parameter: overturned after an impact, safe again, and overturned
-    without impact.
+    A full sine with three times the frequency parameter of the body. With increasing amplitude, the body overturns
+    after an impact, does not overturn, and overturns without impact.
 
     >>> import math
     >>> import rocking as rk
@@ -330,24 +330,24 @@ def minimum_overturning_accelerations(  # noqa: PLR0913 - users set every one of
     progress: Callable[[int], None] | None = None,
     **settings: Any,
 ) -> tuple[Transitions, ...]:
-    """Return the results of `minimum_overturning_acceleration` for many bodies, computed together.
+    """Return the results of `minimum_overturning_acceleration` for many bodies, which are computed together.
 
     Parameters
     ----------
     bodies : sequence of Body
-        The bodies; the restitution is evaluated for each body.
+        The bodies. The restitution is evaluated for every body.
     motion, restitution, min_pga, max_pga, samples, bisections, tolerance, gravity, threads, progress, **settings
         As for `minimum_overturning_acceleration`.
 
     Returns
     -------
     tuple of Transitions
-        Transitions of each body.
+        Transitions of the bodies.
 
     Raises
     ------
     InvalidValueError
-        If a value is outside its range, or the motion is zero.
+        If a value is outside its range, or if the motion is zero.
     """
     several: object = bodies
     if not isinstance(several, Sequence) or not several:

@@ -1,4 +1,4 @@
-"""Minimum overturning accelerations in rounds: common search of all motions, restitutions and bodies."""
+"""Minimum overturning accelerations in rounds: a common search for all motions, restitutions and bodies."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -17,7 +17,7 @@ from rocking.studies.sensitivity.restitutions import sampled
 from rocking.studies.study_plan import AdaptiveResult, Compute, NumberedTable
 from rocking.tables import Column, Table, prefixed, text_array
 
-# histories of later rounds over those of the first, by kind of motion
+# ratio of histories of later rounds to histories of the first round, by kind of motion
 _LATER = {"pulses": (2.0, 10.0), "records": (10.0, 100.0)}
 _MODE = "no uplift -2, no overturning -1, n >= 0 overturned after n impacts"
 
@@ -58,12 +58,12 @@ class MinimumSearch:
     kept: float = field(default=1.0, init=False)
 
     def __call__(self, compute: Compute) -> AdaptiveResult:
-        """Return a tuple of `Transitions`, None for cases without a result, and their tables."""
+        """Return a tuple of `Transitions` (None for cases without a result), and their tables."""
         motion, _, body = np.unravel_index(np.arange(self.cases.uplift.size), self.shape)
 
         def run(values: dict[str, FloatArray], case: IntArray) -> Arrays:
             if case.size:
-                # random numbers of a body do not depend on the amplitude, nor on the other motions
+                # the random numbers of a body depend neither on the amplitude nor on other motions
                 options: dict[str, Any] = {"law": self.law, **self.options}
                 results = compute(sampled(NumberedTable(self.motions, motion[case], values, body[case], **options)))
             else:
@@ -106,7 +106,7 @@ def tables_of(
 
 
 def _row(crossings: Transitions | None, cases: Cases, effort: Effort, k: int) -> dict[str, Any]:
-    if crossings is None:  # only the first samples were computed, and all failed
+    if crossings is None:  # only the first samples were computed, and all of them failed
         limits = {"uplift_acceleration": cases.uplift[k], "min_pga": cases.low[k], "max_pga": cases.high[k]}
         counts = {"crossings": 0, "starts_overturned": 0, "samples": effort.samples, "failed": effort.samples}
         return dict.fromkeys(_NUMBERS, np.nan) | limits | counts

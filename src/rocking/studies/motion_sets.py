@@ -1,4 +1,4 @@
-"""Motions of a study by index: kept in memory, or generated from a seed when needed."""
+"""Motions of a study by index. Motions are kept in memory, or generated from a seed when needed."""
 
 import os
 from abc import ABC, abstractmethod
@@ -34,12 +34,12 @@ class MotionSet(ABC):
         Returns
         -------
         dict
-            Provenance; sets with equal descriptions contain equal motions.
+            Provenance. Sets with equal descriptions contain equal motions.
         """
 
     @property
     def in_memory(self) -> bool:
-        """True if all motions are in memory, so that the engine prepares them once."""
+        """True if all motions are in memory, so that the engine prepares the motions once."""
         return False
 
 
@@ -49,14 +49,14 @@ class MotionList(MotionSet):
     Parameters
     ----------
     motions : GroundMotion, Pulse or mapping, or a sequence of them
-        All records or all pulses; also components by axis, as for `simulate`.
+        Either records only or pulses only. Components by axis are allowed, as for `simulate`.
     plane : bool
-        True for plane bodies, which need a component along x and one along z, one record each.
+        True for plane bodies, which use a component along x and a component along z; both must be records.
 
     Raises
     ------
     InvalidValueError
-        If there is no motion, or the motions have different kinds.
+        If there is no motion, or if the motions have different kinds.
 
     Examples
     --------
@@ -109,7 +109,7 @@ class MotionList(MotionSet):
 
 
 def digest(motion: Any) -> str:
-    """Return the SHA-256 of a motion for an engine: the step, and the coefficients of both accelerations."""
+    """Return the SHA-256 of a motion for an engine, from the step and the coefficients of both accelerations."""
     import hashlib
 
     import numpy as np
@@ -128,9 +128,10 @@ MOST_MOTIONS = 10_000_000  # largest number of motions of a set
 
 
 class SyntheticSet(MotionSet):
-    """Motions of a family, each generated on access.
+    """Motions of a family. A motion is generated on access.
 
-    A motion depends on the family, the seed and its index only: a larger set begins with the motions of a smaller set.
+    A motion depends only on the family, the seed and its index, so that a larger set begins with the motions of a
+    smaller set.
 
     Parameters
     ----------
@@ -141,15 +142,15 @@ class SyntheticSet(MotionSet):
     seed : int
         Seed of the set, at least 0 [-].
     time_step : float, optional
-        Time step of the samples; default: that of the family [s].
+        Time step of the samples [s]. Default: the time step of the family.
     **level : float
-        Level of the scaled motions: one measure that grows with the motion, by name, such as ``pga=3.0``; default:
-        unscaled [unit of the measure].
+        Level of the scaled motions [unit of the measure], by the name of one measure that increases with the scale
+        factor, such as ``pga=3.0``. Default: unscaled.
 
     Raises
     ------
     InvalidValueError
-        If a value is outside its range, there are several levels, or scaling does not change the measure.
+        If a value is outside its range, if there are several levels, or if scaling does not change the measure.
 
     Examples
     --------
@@ -193,7 +194,7 @@ class SyntheticSet(MotionSet):
         return motion
 
     def description(self) -> dict[str, Any]:
-        """Return family, distributions, seed, level, and hashes of the first and last motion."""
+        """Return family, distributions, seed, level, and hashes of the first and the last motion."""
         first, last = self._ends
         return {
             "kind": "synthetic",
@@ -220,7 +221,7 @@ class SyntheticSet(MotionSet):
 
 
 def _named(make: Callable[..., GroundMotion]) -> str:
-    """Return the name of a function; refuse functions without a name or with bound values."""
+    """Return the name of a function. Raise an error for functions without a name or with bound values."""
     name = getattr(make, "__qualname__", "")
     has_values = getattr(make, "__closure__", None) or (getattr(make, "__self__", None) is not None)
     if not name or "<lambda>" in name or has_values:

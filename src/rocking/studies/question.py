@@ -1,4 +1,4 @@
-"""Question of a study: one body, one motion, restitution and settings; and their variations."""
+"""Question of a study (one body, one motion, restitution and settings), and variations of these."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -31,18 +31,18 @@ from rocking.restitution.from_file import origin_of
 from rocking.version import SOFTWARE
 
 UNLIFTED, SURVIVED, FAILED = -2, -1, -3
-"""Modes other than the number of impacts before overturning: no uplift; rocking without overturning; no result."""
+"""Modes that are not a number of impacts before overturning: no uplift, rocking without overturning, no result."""
 
 
 @dataclass(frozen=True)
 class Question:
-    """One body under one motion, subject to variations."""
+    """One body under one motion, which can be varied."""
 
     body: Any  # a plane or 3D body
-    motion: Any  # or components by axis, as for `simulate`
+    motion: Any  # a motion, or components by axis, as for `simulate`
     restitution: Any = DEFAULT_RESTITUTION  # as for `simulate`
     settings: Settings = field(default_factory=PlaneSettings)  # settings of the integration
-    threads: int | None = None  # threads of the fast engine; the results do not depend on them
+    threads: int | None = None  # number of threads of the fast engine; the results do not depend on this number
     engine: str = "auto"  # name of the engine
 
     def __post_init__(self) -> None:
@@ -66,7 +66,7 @@ class Question:
         return Batch([self.motion.segments()], self.law, self.settings, self.threads, self.engine)
 
     def parameters_of(self, body: Body) -> RockingParameters:
-        """Return the parameters of another body, with the restitution evaluated for it."""
+        """Return the parameters of another body. The restitution is evaluated for this body."""
         return mechanics_of(self.settings).parameters(body, self.restitution, self.settings)
 
     def run(
@@ -77,7 +77,7 @@ class Question:
         progress: Callable[[int], None] | None = None,
     ) -> tuple[Arrays, dict[str, int]]:
         """Return the results of variations, including modes and relative peaks [-]."""
-        # values: sides, scale and other varied inputs, by the names of `batch.ROWS`, one entry per history
+        # values: sides, scale and other varied inputs by the names of `batch.ROWS`, one entry per history
         count = stretch.size
         if np.any(stretch != 1.0):
             self.check_stretching("an axis")
@@ -91,7 +91,7 @@ class Question:
         return results, work
 
     def check_stretching(self, name: str) -> None:
-        """Refuse to stretch time for a restitution that depends on the speed."""
+        """Raise an error if time is stretched for a restitution that depends on the speed."""
         if self.law.kind in {1, -1}:
             raise InvalidValueError(
                 "{name} stretches the time of the motion, which needs a restitution that does not depend on the speed "
@@ -117,25 +117,25 @@ class Question:
 
 @dataclass(frozen=True)
 class Case:
-    """Variations of a question, one entry each; axes return changed copies."""
+    """Variations of a question, one entry per variation. Axes return changed copies."""
 
-    question: Question  # the unvaried question
+    question: Question  # the question before variation
     count: int  # number of variations
     scale: FloatArray  # scale factor of the motion [-]
     stretch: FloatArray  # factor on the time of the motion [-]
     # dimensions that vary, by the names of `changed_body` [m, rad]
     geometry: Mapping[str, FloatArray] = field(default_factory=dict)
-    # alpha, p and r, right and left, of the final bodies [rad, rad/s, -]
+    # alpha, p and r (right and left) of the final bodies [rad, rad/s, -]
     sides: Mapping[str, FloatArray] = field(default_factory=dict)
-    amplitude_is_set: bool = False  # True if an axis has set the amplitude, so that the velocity sets the time
+    amplitude_is_set: bool = False  # True if an axis has set the amplitude; an axis of velocity then changes the time
 
     @classmethod
     def of(cls, question: Question, count: int) -> "Case":
-        """Return equal copies of a question as variations."""
+        """Return equal copies of a question, as variations."""
         return cls(question, count, np.ones(count), np.ones(count))
 
     def settled(self) -> "Case":
-        """Return the case with the bodies and their restitution; NaN for impossible bodies."""
+        """Return the case with final bodies and restitution. Impossible bodies are NaN."""
         names = sorted(self.geometry)
         if not names:
             rows, inverse = np.empty((1, 0)), np.zeros(self.count, dtype=np.int64)
@@ -177,7 +177,7 @@ class Case:
 
     @property
     def values(self) -> dict[str, FloatArray]:
-        """Engine inputs of each variation."""
+        """Engine inputs of the variations."""
         return {**self.sides, "scale": self.scale}
 
 
@@ -185,23 +185,24 @@ _RATES = {"p_right", "p_left", "velocity"}
 
 
 def quickened(values: Mapping[str, FloatArray], stretch: FloatArray) -> dict[str, FloatArray]:
-    """Return bodies whose response to the motion equals that of the given bodies to the stretched motion.
+    """Return bodies whose response to the motion equals the response of the given bodies to the stretched motion.
 
-    A motion stretched in time by s has the same effect on a body of frequency parameter p as the motion itself on a
-    body of p s, with all times multiplied by s. One motion replaces all stretched ones without approximation.
+    A motion that is stretched in time by s has the same effect on a body with frequency parameter p as the unstretched
+    motion on a body with p s, if all times are multiplied by s. Therefore, one motion replaces all stretched motions
+    without approximation.
     """
     return {name: row * stretch if name in _RATES else row for name, row in values.items()}  # Eq. 179
 
 
 def reference_side(body: Body) -> str:
-    """Return the side of first uplift: the more slender one, the right one if equal."""
+    """Return the side of first uplift, which is the more slender side. If both are equal, return the right side."""
     return "left" if body.side("left").slenderness_angle < body.side("right").slenderness_angle else "right"
 
 
 def changed_body(body: Any, parameters: Mapping[str, float]) -> Any:
     """Return a body with other dimensions."""
-    # semi_diagonal [m] scales any body with all its lengths; slenderness_angle [rad], width and height [m] are for a
-    # block. A slenderness alone keeps the semi-diagonal, a width alone the height, a height alone the width.
+    # semi_diagonal [m] scales all lengths of any body; slenderness_angle [rad], width and height [m] are for a
+    # block. Slenderness alone keeps the semi-diagonal, width alone keeps the height, and height alone keeps the width.
     if not parameters:
         return body
     if not isinstance(body, Body):
@@ -249,7 +250,7 @@ def _dimensions(block: Block, dimensions: Mapping[str, float]) -> tuple[float, f
 
 
 def modes_of(results: Arrays) -> np.ndarray:
-    """Return -3 failed, -2 no uplift, -1 rocking without overturning, n >= 0 overturned after n impacts.
+    """Return the modes: -3 failed, -2 no uplift, -1 rocking without overturning, n >= 0 overturned after n impacts.
 
     >>> modes_of({"outcome": np.array([0, 1, 2, 3]), "impacts": np.array([0, 3, 1, 0])}).tolist()
     [-2, -1, 1, -3]
@@ -264,5 +265,5 @@ def modes_of(results: Arrays) -> np.ndarray:
 
 
 def peak_ratio(peak: FloatArray, right: FloatArray, left: FloatArray) -> FloatArray:
-    """Return the peak rotation over the slenderness angle of its side; above 1 is not overturning [-]."""
+    """Return the peak rotation over the slenderness angle of its side [-]. Values above 1 need not be overturning."""
     return np.abs(peak) / np.where(np.asarray(peak) < 0.0, left, right)  # Eq. 181

@@ -29,18 +29,18 @@ TYPES: dict[str, Any] = {
     name: np.float64 if name in {"overturned", "still_rocking", "lost_contact"} else RESULTS.get(name, np.float64)
     for name in HISTORY
 } | {"mode": np.int64}
-"""Types of the results of a history."""
+"""Data types of the results of a history."""
 
 
 Compute = Callable[[Histories], Arrays]
-"""Function that computes a round of histories; a campaign stores each round and resumes from it."""
+"""Function that computes a round of histories. A campaign stores every round and can resume after it."""
 
 
 @dataclass(frozen=True)
 class AdaptiveResult:
-    """Result of an adaptive study: tables of any length, in addition to its histories or instead of them."""
+    """Result of an adaptive study: tables of any length, in addition to the histories or instead of the histories."""
 
-    value: Any  # return value of the Python call
+    value: Any  # return value of the Python function
     tables: Mapping[str, Table]  # tables of the result, by their names in `export`
     attributes: dict[str, Any] = field(default_factory=dict)  # additional attributes, as plain values
 
@@ -50,29 +50,29 @@ class Search(Protocol):
 
     @property
     def kept(self) -> float:
-        """Fraction of its later histories that stays in memory [-]."""
+        """Fraction of the later histories that stays in memory [-]."""
 
     def __call__(self, compute: Compute) -> AdaptiveResult:
-        """Request the rounds of histories and return the result."""
+        """Compute the rounds of histories and return the result."""
 
     def later(self, first: int) -> tuple[int, int]:
-        """Return the usual range of the number of histories of later rounds, from jobs of many sizes."""
+        """Return the usual range of the number of histories of later rounds, known from jobs of many sizes."""
 
 
 @dataclass(frozen=True)
 class Study:
     """Histories over dimensions."""
 
-    histories: Histories  # histories (of an adaptive study the first round); the last dimension changes fastest
+    histories: Histories  # histories (for an adaptive study, the first round); the last dimension changes fastest
     dims: dict[str, int]  # length of every dimension, in order
     coordinates: dict[str, Column]  # coordinates along the dimensions: columns with `dims`
     attributes: dict[str, Any] = field(default_factory=dict)  # description of the study, as plain values
     exports: tuple[str, ...] = ("histories",)  # possible exports; the first is the default
-    # function from the results of all histories to the fragility analysis of each restitution by label
+    # function from the results of all histories to the fragility analyses of the restitutions, by label
     finish: Callable[[Arrays], dict[str, Any]] | None = None
-    # function of first and last index and results, which converts results to the units of the user
+    # function of first index, last index and results that converts results to the units of the user
     rescale: Callable[[int, int, Arrays], Arrays] | None = None
-    # search of an adaptive study: function from a `Compute` to the result of all rounds
+    # search of an adaptive study, a function from a `Compute` to the result of all rounds
     search: Search | None = None
     # function from outcome and peak_rotation of all histories to the assessment of an inventory
     assess: Callable[[Arrays], Any] | None = None
@@ -93,7 +93,7 @@ class Study:
 
     @property
     def types(self) -> dict[str, Any]:
-        """Types of the results as users know them."""
+        """Data types of the results in the units of the user."""
         own = self.histories.columns
         return TYPES if own is RESULTS else own
 
@@ -117,7 +117,7 @@ class Study:
         return dataset
 
     def computed(self, progress: Callable[[int], None] | None = None, threads: int | None = None) -> Any:
-        """Compute the study in memory; return the value of its search, its evaluation, or the dataset of histories."""
+        """Compute the study in memory. Return the value of its search, its evaluation, or the dataset of histories."""
         compute = partial(results_of, progress=progress, threads=threads)
         if self.search is not None:
             return self.search(compute).value
@@ -139,7 +139,7 @@ def labels_along(dim: str, values: Iterable[str], meaning: str) -> Column:
 
 
 def motions_along(motions: MotionSet) -> Column:
-    """Return the names of the motions, or their indices in a set that is generated from a seed."""
+    """Return the names of the motions. For a set that is generated from a seed, return indices."""
     if isinstance(motions, MotionList):
         return labels_along("motion", (motions[k].name for k in range(len(motions))), "name of the motion")
     return along("motion", np.arange(len(motions)), "1", "number of the motion in its set")
@@ -147,9 +147,9 @@ def motions_along(motions: MotionSet) -> Column:
 
 @dataclass(frozen=True, eq=False)
 class NumberedTable(HistoryTable):
-    """Table of histories with an index of random numbers for each history."""
+    """Table of histories, with one index of random numbers per history."""
 
-    number: IntArray  # index of the random coefficients of each history
+    number: IntArray  # indices of the random coefficients of the histories
 
     def rows(self, first: int, last: int) -> Rows:
         """Return a range of the rows."""
@@ -175,7 +175,7 @@ class DelegatedBatch(Batch):
         progress: Callable[[int], None] | None = None,
         threads: int | None = None,
     ) -> tuple[Arrays, dict[str, int]]:
-        """Return the results of histories, NaN for results that a round does not store; steps are not counted."""
+        """Return the results of histories. Results that a round does not store are NaN. Steps are not counted."""
         if not count:
             return super().run(0, rows)
         all_rows = rows(0, count)
@@ -188,13 +188,13 @@ class DelegatedBatch(Batch):
 
 @dataclass(frozen=True)
 class DelegatedQuestion(Question):
-    """A question whose histories are computed by `compute`, for use in any study."""
+    """A question whose histories are computed by `compute`. It can be used in any study."""
 
     compute: Compute = field(kw_only=True)
 
     @classmethod
     def of(cls, question: Question, compute: Compute) -> "DelegatedQuestion":
-        """Return a copy of a question with the given function."""
+        """Return a copy of a question with the function `compute`."""
         return cls(**{name: getattr(question, name) for name in question.__dataclass_fields__}, compute=compute)
 
     @cached_property

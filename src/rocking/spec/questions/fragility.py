@@ -186,7 +186,7 @@ class StripesQuestion(AnalysisQuestion):
 
 
 class IncrementalQuestion(AnalysisQuestion):
-    """Fragility of one body from all levels at which a motion begins or ceases to overturn the body."""
+    """Fragility of one body from all levels at which a motion begins or ceases to overturn it."""
 
     kind: ClassVar[str] = "incremental"
     one_restitution: ClassVar[bool] = True

@@ -42,28 +42,30 @@ def fragility(  # noqa: PLR0913 - users set every one of them
     body : Body
         The body.
     motions : GroundMotion or Pulse, a sequence of them, or MotionSet
-        All records or all pulses.
+        Either records only or pulses only.
     levels : array_like, optional
-        Increasing levels of the measure; every motion is scaled to each level; not for a cloud. An incremental
-        analysis searches the boundary between neighbours of different outcome, and from zero to the first level.
-        Default: 16 levels from 0.9 to 9 times the uplift level, if the measure has one [unit of the measure].
+        Increasing levels of the measure [unit of the measure], to which every motion is scaled. A cloud has no levels.
+        An incremental analysis searches boundaries between neighbouring levels with different outcomes, and between
+        zero and the first level. Default: 16 levels from 0.9 to 9 times the uplift level, if the measure has an uplift
+        level.
     restitution : as for `simulate`
-        Model or its name, number, pair by side, or law.
+        Model, name of a model, coefficient, pair by side, or law.
     analysis : {"stripes", "cloud", "incremental"}
-        Multiple stripes; the motions as recorded; or stripes with every level between them at which a motion begins
-        or ceases to overturn the body.
+        Multiple stripes; cloud of the motions as recorded; or stripes with all levels between them at which a motion
+        begins or ceases to overturn the body.
     im : str or IntensityMeasure
-        A name of `rocking.motions.intensity.measures`, or ``sa(period)``. Levels need a measure that grows with the
-        motion.
+        A name from `rocking.motions.intensity.measures`, or ``sa(period)``. Levels need a measure that increases with
+        the scale factor.
     limit_states : sequence of float or str
-        Limit states: rotations over alpha [-], with rocking and overturning. If ``"rocking"`` or
-        ``"overturning"`` is in the sequence, only the states of the sequence.
+        Limit states as rotations over alpha [-]. Rocking and overturning are added, unless ``"rocking"`` or
+        ``"overturning"`` is in the sequence.
     scale : float, optional
-        Scale factor of all motions of a cloud; default 1 [-].
+        Scale factor of all motions of a cloud [-]. The default is 1.
     min_rotation : float, optional
-        Smallest rotation over alpha of a history of a cloud that enters the regression; default 0.01 [-].
+        Smallest rotation over alpha with which a history of a cloud is part of the regression [-]. The default is 0.01.
     tolerance : float, optional
-        Relative width at which the search of an incremental analysis ends; 0 for the last bit, default 1e-8 [-].
+        Relative width at which the search of an incremental analysis ends [-]. 0 means the last bit; the default is
+        1e-8.
     progress : callable, optional
         Called with the number of histories done since the last call.
     **options
@@ -72,14 +74,14 @@ def fragility(  # noqa: PLR0913 - users set every one of them
     Returns
     -------
     xarray.Dataset
-        Outcome and rotation over ``motion`` and ``level`` (a cloud: over ``motion``); over ``state`` the lognormal
-        curves: median [unit of the measure], dispersion [-], their 95 % intervals and the verdict. Missing values are
-        NaN. All variables have units.
+        Dataset of outcome and rotation over ``motion`` and ``level`` (cloud: over ``motion``). The lognormal curves are
+        over ``state``: median [unit of the measure], dispersion [-], 95 % intervals of both, and the verdict. Missing
+        values are NaN. All variables have units.
 
     Raises
     ------
     InvalidValueError
-        If a value is outside its range or belongs to another analysis, or if levels are missing.
+        If a value is outside its range or is for another analysis, or if levels are missing.
     MissingExtraError
         If xarray is not installed.
 
@@ -121,24 +123,24 @@ def fragility_analysis(  # noqa: PLR0913 - those of `fragility`
     progress: Progress = None,
     **options: Any,
 ) -> Any:
-    """Return the analysis behind `fragility`, the input of plots, rankings of measures and files.
+    """Return the analysis of `fragility` as an object for plots, rankings of measures and files.
 
     Parameters
     ----------
     body, motions, levels, restitution, analysis, im, limit_states, scale, min_rotation, progress
-        As for `fragility`; progress does not count the histories of a search.
+        As for `fragility`. `progress` does not count the histories of a search.
     **options
-        As for `fragility`; ``tolerance`` of stripes and clouds is the tolerance of `Settings`.
+        As for `fragility`. For stripes and clouds, ``tolerance`` is the tolerance of `Settings`.
 
     Returns
     -------
     MultipleStripeAnalysis, CloudAnalysis or IncrementalDynamicAnalysis
-        Outcomes, counts and curves; the regression of a cloud, the intervals of an incremental analysis.
+        Outcomes, counts and curves; for a cloud the regression, for an incremental analysis the intervals.
 
     Raises
     ------
     InvalidValueError
-        If a value is outside its range or belongs to another analysis, or if levels are missing.
+        If a value is outside its range or is for another analysis, or if levels are missing.
 
     Examples
     --------
@@ -171,7 +173,7 @@ def fragility_analysis(  # noqa: PLR0913 - those of `fragility`
 
 
 def _with_curves(analysis: MultipleStripeAnalysis | CloudAnalysis) -> "xr.Dataset":
-    """Return the dataset of an analysis with the curve of each state."""
+    """Return the dataset of an analysis, including the curves of the states."""
     names = [state.name for state in analysis.limit_states]
     curves = [name in analysis.fits and curve_of(name, analysis.fits[name]) for name in names]
     verdicts = [analysis.fits[name].verdict if name in analysis.fits else analysis.uplift.verdict for name in names]

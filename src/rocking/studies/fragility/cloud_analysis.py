@@ -18,7 +18,7 @@ from rocking.studies.fragility.subject import FragilityAnalysis, Responses
 if TYPE_CHECKING:
     import xarray as xr
 
-MIN_ROTATION = 0.01  # default of the rotation over alpha below which a history counts as barely lifted [-]
+MIN_ROTATION = 0.01  # default limit of the rotation over alpha [-]; histories with smaller rotations are barely lifted
 
 DEFINITION = (
     "cloud: overturning is fitted to the outcome of each motion at its own level; among histories that rocked, not "
@@ -28,20 +28,20 @@ DEFINITION = (
 
 
 def checked_min_rotation(rotation: float) -> float:
-    """Return the checked rotation over alpha [-] below which a history counts as barely lifted."""
+    """Return the checked limit of the rotation over alpha [-] for barely lifted histories."""
     return checks.within("min_rotation", rotation, 0.0, 1.0, open_high=True, hint="a rotation over alpha")
 
 
 def clearly_lifted(responses: Responses, min_rotation: float) -> BoolArray:
-    """Return True for histories that rocked without overturning, by at least a rotation over alpha [-]."""
+    """Return True for histories without overturning whose rotation over alpha reaches `min_rotation` [-]."""
     return np.asarray(responses.rocked & (responses.rotation >= min_rotation) & (responses.rotation > 0.0))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CloudAnalysis(FragilityAnalysis):
-    """Result of a cloud analysis; states and rotations have one entry per motion."""
+    """Result of a cloud analysis. States and rotations have one entry per motion."""
 
-    motion_levels: FloatArray  # measure of each scaled motion [its unit]
+    motion_levels: FloatArray  # measures of the scaled motions [unit of the measure]
     min_rotation: float = MIN_ROTATION  # smallest rotation over alpha in the regression [-]
 
     kind = "cloud"
@@ -57,17 +57,17 @@ class CloudAnalysis(FragilityAnalysis):
 
     @property
     def levels(self) -> FloatArray:
-        """Levels of the motions, increasing and unique [unit of the measure]."""
+        """Levels of the motions [unit of the measure], increasing and unique."""
         return self._sorted[0]
 
     @property
     def trials(self) -> IntArray:
-        """Number of motions at each level whose history could be computed."""
+        """Number of motions with a computed history, at every level."""
         return self._counted(self.responses.good)
 
     @cached_property
     def counts(self) -> dict[str, IntArray]:
-        """Number of motions that reach each state, by name of the state, at each level."""
+        """Number of motions that reach a state, by name of the state and at every level."""
         return {s.name: self._counted(self.responses.exceed(s) == 1.0) for s in self.limit_states}
 
     def _counted(self, selected: BoolArray) -> IntArray:
@@ -75,23 +75,23 @@ class CloudAnalysis(FragilityAnalysis):
 
     @cached_property
     def regression(self) -> Regression:
-        """Regression of ln(theta/alpha) on ln of the measure, from histories clearly lifted without overturning."""
+        """Regression of ln(theta/alpha) on ln of the measure, from clearly lifted histories without overturning."""
         levels, rotation = self.motion_levels[self.clear], self.responses.rotation[self.clear]
         return regression(np.log(levels), np.log(rotation))
 
     @property
     def barely_lifted(self) -> int:
-        """Number of histories that rocked by less than `min_rotation`; the regression does not include them."""
+        """Number of histories that rocked by less than `min_rotation`. The regression excludes these histories."""
         return int(np.sum(self.responses.rocked & ~self.clear))
 
     @cached_property
     def clear(self) -> BoolArray:
-        """True for histories that rocked without overturning, by at least `min_rotation`."""
+        """True for histories without overturning that rocked by `min_rotation` or more."""
         return clearly_lifted(self.responses, self.min_rotation)
 
     def clear_fraction(self, level: FloatArray) -> FloatArray:
-        """Return the fraction clearly lifted of the histories that rocked without overturning, at levels [-]."""
-        # a lognormal curve if the outcomes determine one, else their fraction at all levels
+        """Return the fraction of clearly lifted histories among those that rocked without overturning [-]."""
+        # a lognormal curve if the outcomes determine a curve, otherwise the fraction over all levels
         rocked, fit = self.responses.rocked, self._clear_fit
         if fit is not None and fit.exists:
             return np.asarray(fit.probability(level))
@@ -101,13 +101,13 @@ class CloudAnalysis(FragilityAnalysis):
     @cached_property
     def _clear_fit(self) -> LognormalFit | None:
         rocked = self.responses.rocked
-        with suppress(InvalidValueError):  # all at one level: there is no curve; the fraction is used
+        with suppress(InvalidValueError):  # if all motions have one level, there is no curve, and the fraction is used
             if rocked.any() and 0 < self.clear.sum() < rocked.sum():
                 return fit_lognormal(self.motion_levels[rocked], self.clear[rocked])
         return None
 
     def probability_of_rocking(self, level: Any) -> FloatArray:
-        """Return the probability of rocking or overturning [-]: 0 or 1 if a level decides it, else from a fit."""
+        """Return the probability of rocking or overturning [-], from the uplift level (0 or 1) or from a fit."""
         levels = checks.positive_array("level", level, self.subject.measure.unit)
         threshold = self.subject.uplift_threshold
         if threshold is not None:
@@ -115,23 +115,23 @@ class CloudAnalysis(FragilityAnalysis):
         return np.asarray(self.fit_of("rocking").probability(levels), dtype=np.float64)
 
     def probability(self, level: Any, rotation: float) -> FloatArray:
-        """Return the probability of a rotation above a value over alpha at levels [-]; value >= `min_rotation`."""
+        """Return the probability at levels that the rotation over alpha exceeds a value >= `min_rotation` [-]."""
         # P(overturned) + P(rocked, not overturned) P(rotation exceeded | rocked, not overturned)
         terms = self.parts(level, rotation)
         return terms["overturned"] + terms["exceeded"]  # Eq. 221
 
     def parts(self, level: Any, rotation: float) -> dict[str, FloatArray]:
-        """Return the terms of the total probability, which add up to 1, at levels and for a rotation over alpha [-].
+        """Return the terms of the total probability at levels, for a rotation over alpha [-]. They add up to 1.
 
-        ``no rocking``, ``below`` (rocked, not beyond the rotation), ``exceeded`` (rocked beyond it, did not overturn)
-        and ``overturned``. A barely lifted body reaches no rotation above `min_rotation`.
+        The terms are ``no rocking``, ``below`` (rocked up to the rotation), ``exceeded`` (rocked beyond the rotation
+        without overturning) and ``overturned``. A barely lifted body does not exceed `min_rotation`.
         """
         levels = checks.positive_array("level", level, self.subject.measure.unit)
         hint = "The regression does not include barely lifted histories. Reduce min_rotation."
         limit = math.log(
             checks.positive("rotation", checks.within("rotation", rotation, self.min_rotation, 1e6, hint=hint))
         )
-        # an overturned body has rocked: if the curves cross, rocking is at least as probable
+        # an overturned body has rocked; if the curves cross, the probability of rocking is at least that of overturning
         rocks = self.probability_of_rocking(levels)
         over = np.minimum(np.asarray(self.fit_of("overturning").probability(levels), dtype=np.float64), rocks)
         beyond = self.regression.probability_above(limit, np.log(levels)) * self.clear_fraction(levels)
@@ -144,7 +144,7 @@ class CloudAnalysis(FragilityAnalysis):
 
     @cached_property
     def dataset(self) -> "xr.Dataset":
-        """All outcomes with their units, over motion."""
+        """Dataset of all outcomes with units, over motion."""
         data = {**self.responses.labelled("motion"), "level": ("motion", self.motion_levels, self.subject.label)}
         return self._labelled(data, {}, DEFINITION)
 

@@ -1,4 +1,4 @@
-"""Fragility curves for export, independent of their analysis; curves that cross are refused or fitted again."""
+"""Fragility curves for export, independent of the analysis. Crossing curves raise an error or are fitted again."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -20,13 +20,13 @@ from rocking.studies.fragility.subject import NAMED, Subject, checked_levels
 if TYPE_CHECKING:
     import xarray as xr
 
-CLAIMS = ("method", "verdict", "interval_method")  # texts exported with each curve
+CLAIMS = ("method", "verdict", "interval_method")  # texts that are exported with every curve
 Crossing = Literal["keep-uplift", "common-dispersion", "refuse"]
 
 COMMON = "common-dispersion"  # method of curves with a common dispersion
 ROCKING = NAMED["rocking"].name
 STATES = Option("fragility.limit_states")
-TOLERANCE = 1e-6  # Largest probability by which a worse state may be likelier than a lesser one in a file [-]
+TOLERANCE = 1e-6  # largest allowed excess of the probability of a worse state over that of a lesser state in a file [-]
 
 
 @dataclass(frozen=True)
@@ -38,15 +38,15 @@ class FragilityCurve:
     state : str
         Name of the state.
     median : float
-        Level at which half of the motions reach the state [unit of the measure].
+        Level at which the probability of the state is 0.5 [unit of the measure].
     dispersion : float
-        Standard deviation of the natural logarithm of that level [-].
+        Standard deviation of the natural logarithm of the level [-].
     method : str
         Method of the fit.
     verdict : str
         Verdict on the fit.
     median_95, dispersion_95 : tuple, optional
-        Ends of the 95 % intervals, None for an open end; None without an interval [unit of median, dispersion].
+        Ends of the 95 % intervals [unit of median, dispersion]. An open end is None; a missing interval is None.
     interval_method : str
         Method of the intervals.
     agreement : Agreement, optional
@@ -54,7 +54,7 @@ class FragilityCurve:
     repeated : Repeated, optional
         Intervals from the bootstrap; None if not requested.
     alone : FragilityCurve, optional
-        The curve fitted to this state alone, with its intervals; None if this curve is that fit.
+        The curve that was fitted to this state alone, with intervals; None if this curve is that fit.
 
     Raises
     ------
@@ -80,7 +80,7 @@ class FragilityCurve:
 
     @property
     def facts(self) -> dict[str, Any]:
-        """The curve with the keys of `LognormalFit.summary`; None for missing values."""
+        """The curve, with the keys of `LognormalFit.summary`. Missing values are None."""
         absent = dict.fromkeys(("interval_method", "standard_errors", "log_likelihood"))
         ends = {name: list(getattr(self, name) or (None, None)) for name in ("median_95", "dispersion_95")}
         values = {name: getattr(self, name) for name in ("median", "dispersion", "method", "verdict")}
@@ -92,7 +92,7 @@ class FragilityCurve:
         Parameters
         ----------
         level : float or array_like
-            Levels, zero or above [unit of the measure].
+            Levels >= 0 [unit of the measure].
 
         Returns
         -------
@@ -118,30 +118,30 @@ class FragilityModel:
     im : str
         Name of the intensity measure.
     unit : str
-        Its unit; ``-`` if it has none.
+        Unit of the measure; ``-`` if dimensionless.
     curves : tuple of FragilityCurve
         Curves from the mildest to the worst state.
     levels : ndarray
         Levels of the histories [unit of the measure].
     trials : ndarray of int
-        Histories at each level.
+        Number of histories at every level.
     reached : dict of str to ndarray
         Number of histories that reached each state.
     source : str
         Source of the data.
     uplift_threshold : float, optional
-        Level below which nothing rocks, if there is one [unit of the measure].
+        Level below which no body rocks, if known [unit of the measure].
     about : dict
-        Provenance, plain values.
+        Provenance as plain values.
     without : dict of str to str
-        States without a curve, and the reason.
+        States without a curve, with the reason.
     adjusted : str
-        Reason why curves differ from those fitted to each state alone; empty if they do not.
+        Reason why curves differ from fits to single states; empty if they do not differ.
 
     Raises
     ------
     InvalidValueError
-        If there is no curve, two have the same name, or the counts do not fit the levels.
+        If there is no curve, if two curves have the same name, or if the counts do not fit the levels.
     """
 
     name: str
@@ -181,12 +181,12 @@ class FragilityModel:
 
     @property
     def highest(self) -> float:
-        """Level above which all curves are 1: 4 dispersions above all medians, at least the last level [its unit]."""
+        """Level above which all curves are 1: 4 dispersions above all medians, at least the last level."""
         return max(float(self.levels[-1]), *(c.median * math.exp(min(4.0 * c.dispersion, 600.0)) for c in self.curves))
 
     @property
     def dataset(self) -> "xr.Dataset":
-        """Curves, levels and counts with their units, over state and level."""
+        """Dataset of curves, levels and counts with units, over state and level."""
         xarray = extra("xarray", "a labelled dataset")
         unit = "1" if self.unit == "-" else self.unit
         counted = [name for name in self.reached if len(self.levels)]
@@ -225,29 +225,29 @@ def model_of(
     name : str
         Name of the body, as in an inventory.
     source : str
-        Source of the data; default: the definition of the analysis.
+        Source of the data. Default: the definition of the analysis.
     crossing_curves : {"keep-uplift", "common-dispersion", "refuse"}
-        Treatment of curves that cross. "keep-uplift": one dispersion for all crossing states but rocking. The curve
+        Treatment of curves that cross. "keep-uplift": one dispersion for all crossing states except rocking. The curve
         of rocking is not changed if uplift is impossible below a level, and is omitted if it still crosses.
-        "common-dispersion": one dispersion for all states, always. "refuse": the curve of each state alone; files
-        for FEMA P-58, PELICUN and OpenQuake refuse curves that cross.
+        "common-dispersion": always one dispersion for all states. "refuse": the curves of the single states. For
+        crossing curves, export for FEMA P-58, PELICUN and OpenQuake then raises an error.
     bootstrap : int
-        Number of bootstrap repetitions for additional intervals and bands; 0: none.
+        Number of bootstrap repetitions for additional intervals and bands. 0 means no bootstrap.
     seed : int
         Seed of all random numbers.
     limit_states : sequence of str, optional
-        Names of the states of the model; default: all.
+        Names of the states of the model. Default: all states.
 
     Returns
     -------
     FragilityModel
-        The curves. States without a finite median and dispersion are omitted; ``without`` contains the reasons.
-        ``adjusted`` contains the reason if curves differ from those of each state alone.
+        The curves. States without a finite median and dispersion are omitted, and ``without`` contains the reasons. If
+        curves differ from the fits to single states, ``adjusted`` contains the reason.
 
     Raises
     ------
     InvalidValueError
-        If `crossing_curves` or a state is unknown, no state has a curve, or no common dispersion exists.
+        If `crossing_curves` or a state is unknown, if no state has a curve, or if no common dispersion exists.
     """
     check_crossing(crossing_curves)
     alone = _alone(analysis, name, source, limit_states)
@@ -256,15 +256,15 @@ def model_of(
 
 
 def shown_curves(analysis: Any, crossing_curves: Crossing = "keep-uplift") -> FragilityModel | None:
-    """Return the curves of exported files, without their goodness of fit; None if there are none."""
+    """Return the curves of exported files, without goodness of fit; None if there are no curves."""
     try:
         return without_crossing(_alone(analysis, "body"), crossing_curves)
-    except InvalidValueError:  # the export of files raises the reason
+    except InvalidValueError:  # the export of files raises an error with the reason
         return None
 
 
 def _alone(analysis: Any, name: str, source: str = "", limit_states: Sequence[str] | None = None) -> FragilityModel:
-    """Return the curve of each state alone."""
+    """Return the curves fitted to single states."""
     states = (
         list(analysis.fits)
         if limit_states is None
@@ -288,7 +288,7 @@ def _alone(analysis: Any, name: str, source: str = "", limit_states: Sequence[st
 
 
 def curve_of(state: str, fit: LognormalFit, measure: str = "", unit: str = "-") -> FragilityCurve | None:
-    """Return a fit as a curve; None if it has no finite median and dispersion above zero.
+    """Return a fit as a curve; None if median and dispersion are not finite and above zero.
 
     The verdict contains levels of the measure in the unit of exported files.
     """
@@ -303,7 +303,7 @@ def curve_of(state: str, fit: LognormalFit, measure: str = "", unit: str = "-") 
 
 
 def _shown(measure: str, unit: str) -> tuple[str, float]:
-    """Return the unit of a measure in texts of exported files, and one SI unit in that unit."""
+    """Return the unit of a measure in texts of exported files, and the size of one SI unit in this unit."""
     name, size = exchange_unit(measure, unit)
     return "" if name == "-" else name, size
 
@@ -311,13 +311,13 @@ def _shown(measure: str, unit: str) -> tuple[str, float]:
 def with_evidence(
     curve: FragilityCurve, fit: LognormalFit, levels: FloatArray, bootstrap: int = 0, seed: int = 0
 ) -> FragilityCurve:
-    """Return a curve with its goodness of fit, and on request bootstrap intervals and bands at levels."""
+    """Return a curve with goodness of fit and, if requested, bootstrap intervals and bands at levels."""
     repeated = repeated_of(fit, levels, bootstrap, seed) if bootstrap else None
     return replace(curve, agreement=agreement_of(fit, seed), repeated=repeated)
 
 
 def without_crossing(model: FragilityModel, crossing_curves: Crossing = "keep-uplift") -> FragilityModel:
-    """Return the model with curves that do not cross, by one of the treatments; unchanged for "refuse"."""
+    """Return the model with curves that do not cross, by one of the treatments. With "refuse", it is unchanged."""
     match check_crossing(crossing_curves):
         case "common-dispersion" if len(model.curves) > 1:
             return with_common_dispersion(model)
@@ -366,7 +366,7 @@ _COMMON = (
 
 
 def with_common_dispersion(model: FragilityModel) -> FragilityModel:
-    """Return the model with all states fitted again with one dispersion, from its counts."""
+    """Return the model after a new fit of all states with one dispersion, from its counts."""
     missing = [curve.state for curve in model.curves if curve.state not in model.reached]
     if missing:
         raise InvalidValueError(
@@ -401,7 +401,7 @@ def with_common_dispersion(model: FragilityModel) -> FragilityModel:
 
 
 def variables_of(curves: Sequence[FragilityCurve], levels: int, unit: str) -> dict[str, Any]:
-    """Return intervals, goodness of fit and bootstrap of curves, over state; NaN for missing values."""
+    """Return intervals, goodness of fit and bootstrap of curves over state. Missing values are NaN."""
 
     def intervals(ends: Sequence[Ends | None], units: str, meaning: str) -> tuple[Any, np.ndarray, dict[str, str]]:
         long_name = f"95 % interval{meaning}, missing where it is open, or there is none"
@@ -443,12 +443,12 @@ def variables_of(curves: Sequence[FragilityCurve], levels: int, unit: str) -> di
 
 @dataclass(frozen=True)
 class Excess:
-    """Level at which the curve of a worse state lies highest above the curve of a lesser state."""
+    """Level with the largest excess of the curve of a worse state over the curve of a lesser state."""
 
     lesser: str  # lesser, worse: names of the states
     worse: str
     level: float  # [unit of the measure]
-    size: float  # difference of the probabilities [-]
+    size: float  # difference of the probabilities at this level [-]
 
     def describe(self, model: FragilityModel) -> str:
         """Return a phrase with the level, the states and the difference."""
@@ -461,7 +461,7 @@ class Excess:
 
 
 def largest_excess(model: FragilityModel, lowest: float, highest: float) -> Excess | None:
-    """Return the largest excess of neighbouring curves between two levels; None if curves do not cross."""
+    """Return the largest excess of neighbouring curves between two levels; None if the curves do not cross."""
     largest = None
     for lesser, worse in zip(model.curves[:-1], model.curves[1:], strict=True):
         medians, dispersions = np.array([(c.median, c.dispersion) for c in (lesser, worse)]).T
@@ -476,13 +476,13 @@ def largest_excess(model: FragilityModel, lowest: float, highest: float) -> Exce
 
 
 def crosses(model: FragilityModel, highest: float | None = None) -> Excess | None:
-    """Return the largest excess above the tolerance, from the level of uplift to the highest; None without one."""
+    """Return the largest excess above the tolerance between uplift level and highest level; None if none."""
     worst = largest_excess(model, model.uplift_threshold or 0.0, model.highest if highest is None else highest)
     return None if worst is None or worst.size <= TOLERANCE else worst
 
 
 def nested(model: FragilityModel, crossing_curves: Crossing = "refuse", highest: float | None = None) -> FragilityModel:
-    """Return curves that do not cross up to the highest level, with one of the treatments."""
+    """Return curves that do not cross up to the highest level, by one of the treatments."""
     model = without_crossing(model, crossing_curves)
     if (worst := crosses(model, highest)) is None:
         return model
@@ -500,5 +500,5 @@ def nested(model: FragilityModel, crossing_curves: Crossing = "refuse", highest:
 
 
 def check_crossing(crossing_curves: Any) -> str:
-    """Return the treatment of curves that cross, or refuse an unknown one."""
+    """Return the treatment of curves that cross. Raise an error for an unknown treatment."""
     return str(checks.one_of("crossing_curves", crossing_curves, get_args(Crossing)))

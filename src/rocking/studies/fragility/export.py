@@ -1,4 +1,4 @@
-"""Export of fragility curves: parameters, points and FEMA P-58 as CSV, Excel, MATLAB, netCDF; and NRML."""
+"""Export of fragility curves: parameters, points and FEMA P-58 as CSV, Excel, MATLAB or netCDF, and NRML."""
 
 import json
 import math
@@ -123,21 +123,21 @@ def fema_p58_table(
     Parameters
     ----------
     model : FragilityModel
-        The curves; its name is the component's id.
+        The curves. The name of the model is the id of the component.
     description : str
         Description of the component.
     demand_parameter : str
-        Name of the demand in FEMA P-58; default: the measure.
+        Name of the demand in FEMA P-58. Default: the measure.
     quality : str
-        Quality of the data; default: derived by analysis. The method and the verdict of each curve follow it.
+        Quality of the data. Default: derived by analysis. The text continues with method and verdict of the curves.
     crossing_curves : {"keep-uplift", "common-dispersion", "refuse"}
-        Treatment of curves that cross, as in `model_of`: the worse of two states may not be the more probable.
+        Treatment of curves that cross, as in `model_of`. A worse state must not be more probable than a lesser state.
 
     Returns
     -------
     Table
-        Damage states DS1, DS2, ... from the mildest to the worst, sequential. Medians of accelerations are in g, as in
-        files for PELICUN and OpenQuake; the table contains the unit.
+        Sequential damage states DS1, DS2, ... from the mildest to the worst state. Medians of accelerations are in g,
+        as in files for PELICUN and OpenQuake. The table contains the unit.
 
     Raises
     ------
@@ -178,8 +178,8 @@ _LIMIT_STATE = "Family", "Theta_0", "Theta_1", "DamageStateWeights"
 
 def _pelicun(model: FragilityModel, crossing_curves: Crossing) -> Table:
     """Return the damage model of a component for PELICUN 3: one row, accelerations in g."""
-    # layout, names of demands, and spectral|period as in NHERI-SimCenter/DamageAndLossModelLibrary, fragility.csv of
-    # seismic/power_network (Hazus v5.1), vocabularies.py, and fragility.csv of California RC Bridges 2025
+    # layout, names of demands, and spectral|period are as in NHERI-SimCenter/DamageAndLossModelLibrary, fragility.csv
+    # of seismic/power_network (Hazus v5.1), vocabularies.py, and fragility.csv of California RC Bridges 2025
     spectral = spectral_period(model.im)
     if model.im != "pga" and (spectral is None or spectral[1] != 0.05):
         raise InvalidValueError(
@@ -195,7 +195,7 @@ def _pelicun(model: FragilityModel, crossing_curves: Crossing) -> Table:
     peak = f"Peak {'Floor' if on_floor else 'Ground'} Acceleration"
     demand = peak if spectral is None else f"Spectral Acceleration|{spectral[0]!r}"
     unit, size = exchange_unit(model.im, model.unit)
-    # Demand-Directional is 1, since the curve is for a motion in one direction: with 0 PELICUN uses the larger of
+    # Demand-Directional is 1, because the curve is for a motion in one direction; with 0, PELICUN uses the larger of
     # two directions times NonDirectionalMultipliers, default 1.2 (pelicun/model/demand_model.py)
     row: list[Cell] = [model.name, 0, demand, unit, 0, 1]
     curves = nested(model, crossing_curves).curves
@@ -212,7 +212,7 @@ def to_csv(
     *,
     crossing_curves: Crossing = "refuse",
 ) -> Path:
-    """Write a table of a model as comma-separated values, all digits kept.
+    """Write a table of a model as comma-separated values with all digits.
 
     Parameters
     ----------
@@ -221,7 +221,7 @@ def to_csv(
     path : str or path
         The file.
     which : {"parameters", "points", "fema-p58", "pelicun"} or Table
-        The table; for PELICUN 3 a damage model of one component, over pga or sa(period), in g.
+        The table. For PELICUN 3, a damage model of one component over pga or sa(period), in g.
     crossing_curves : {"keep-uplift", "common-dispersion", "refuse"}
         Treatment of curves that cross, as in `model_of`, in the tables of FEMA P-58 and PELICUN.
 
@@ -235,7 +235,7 @@ def to_csv(
 
 
 def to_excel(model: FragilityModel, path: Destination, *, crossing_curves: Crossing = "refuse") -> Path:
-    """Write all tables of a model as a workbook, one sheet per table; text is never stored as a formula.
+    """Write all tables of a model as a workbook, one sheet per table. Text is never stored as a formula.
 
     Parameters
     ----------
@@ -253,7 +253,7 @@ def to_excel(model: FragilityModel, path: Destination, *, crossing_curves: Cross
 
 
 def _sheet(model: FragilityModel, name: str, crossing_curves: Crossing) -> Table:
-    """Return a table, or a table with the reason for its refusal."""
+    """Return a table. If it cannot be exported, return a table with the reason."""
     check_crossing(crossing_curves)
     try:
         return table(model, name, crossing_curves=crossing_curves)
@@ -262,7 +262,7 @@ def _sheet(model: FragilityModel, name: str, crossing_curves: Crossing) -> Table
 
 
 def to_mat(model: FragilityModel, path: Destination) -> Path:
-    """Write a model as a MATLAB file (version 5): one structure ``fragility``.
+    """Write a model as a MATLAB file (version 5) with one structure ``fragility``.
 
     Parameters
     ----------
@@ -272,7 +272,7 @@ def to_mat(model: FragilityModel, path: Destination) -> Path:
     Returns
     -------
     Path
-        The file, with states, median, dispersion, their intervals (NaN for open ends), goodness of fit (NaN if
+        The file. It contains states, median and dispersion with intervals (NaN for open ends), goodness of fit (NaN if
         missing), requested bootstrap, levels, trials, exceeded, probability, texts and provenance.
     """
     structure = {
@@ -297,7 +297,7 @@ def to_mat(model: FragilityModel, path: Destination) -> Path:
 
 
 def _evidence(model: FragilityModel) -> dict[str, Any]:
-    """Return intervals, goodness of fit and bootstrap, one row per state, and reasons of missing curves."""
+    """Return intervals, goodness of fit and bootstrap, one row per state, and reasons for missing curves."""
     evidence = {
         name: np.asarray(values)
         for name, (_, values, *_) in variables_of(model.curves, model.levels.size, model.unit).items()
@@ -341,7 +341,7 @@ def to_nrml(
 ) -> Path:
     """Write a model as an OpenQuake fragility model (NRML 0.5).
 
-    The parameters there are mean and standard deviation of the lognormal variable itself, not of its logarithm.
+    The parameters in NRML are mean and standard deviation of the lognormal variable, not of its logarithm.
 
     Parameters
     ----------
@@ -354,23 +354,23 @@ def to_nrml(
     loss_category : {"structural", "nonstructural", "contents", "business_interruption", "occupants"}
         Category of the loss.
     description : str
-        Description; default: the source of the model. The method and the verdict of each curve follow it.
+        Description. Default: the source of the model. The text continues with method and verdict of the curves.
     highest : float, optional
-        Largest value of the measure in OpenQuake; default: 4 dispersions above all medians and levels [unit of the
-        measure].
+        Largest value of the measure in OpenQuake [unit of the measure]. Default: 4 dispersions above all medians and
+        levels.
     crossing_curves : {"keep-uplift", "common-dispersion", "refuse"}
-        Treatment of curves that cross between the ends of the file, as in `model_of`: curves that cross lead to
+        Treatment of curves that cross within the range of the file, as in `model_of`. Curves that cross would give
         negative probabilities of states.
 
     Returns
     -------
     Path
-        The file. OpenQuake uses zero probability below the threshold of uplift, if there is one.
+        The file. If there is a threshold of uplift, OpenQuake uses zero probability below it.
 
     Raises
     ------
     InvalidValueError
-        If the measure or loss category is unknown to OpenQuake, a name is not allowed in XML, or curves cross.
+        If OpenQuake does not have the measure or loss category, if a name is not allowed in XML, or if curves cross.
     """
     target = target_of(path)
     loss_category = checks.one_of("loss_category", loss_category, LOSS_CATEGORIES)
@@ -406,7 +406,7 @@ def to_nrml(
 
 
 def intensity_type(measure: str) -> tuple[str, str, float]:
-    """Return the name of a measure in OpenQuake, the unit there, and one SI unit in that unit."""
+    """Return name and unit of a measure in OpenQuake, and the size of one SI unit in this unit."""
     period = spectral_period(measure)
     im = MEASURES.get(measure) if period is None else spectral_measure(*period)
     if im is None or im.openquake is None:
@@ -444,14 +444,14 @@ def _identifier(name: str) -> str:
 
 
 def _identifiers(names: list[str]) -> list[str]:
-    """Return names of limit states with letters, digits and underscores only, for a list separated by blanks."""
+    """Return names of limit states for a list separated by blanks, with only letters, digits and underscores."""
     plain = [re.sub(r"[^A-Za-z0-9]+", "_", name.replace(">", "above")).strip("_") or "state" for name in names]
     plain = [name if name[0].isalpha() else f"state_{name}" for name in plain]
     return [name if plain.count(name) == 1 else f"{name}_{k}" for k, name in enumerate(plain, 1)]
 
 
 def _word(text: str) -> str:
-    """Return a text if XML allows all its characters."""
+    """Return a text. Raise an error if XML does not allow one of its characters."""
     if not _XML.fullmatch(text):
         raise InvalidValueError("A text in XML must be printable and not empty, got {word!r:.60}.", word=text)
     return text

@@ -22,11 +22,11 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Outcomes = Callable[[IntArray, FloatArray], tuple[IntArray, BoolArray]]
-"""Function of motion indices and levels; returns sides of overturning (0 if none) and flags of success."""
+"""Function of motion indices and levels that returns sides of overturning (0 without) and flags of success."""
 
-PARTS = 16  # pieces per bracket in the first round, and while there are few brackets
-WIDE = 0.01  # relative width; long records have narrower survivals, with the body balanced on its corner [-]
-FEW = 1000  # number of brackets up to which pieces cost less than rounds; bisection above
+PARTS = 16  # pieces per bracket in the first round, and in later rounds with few brackets
+WIDE = 0.01  # relative width [-]; long records have narrower survivals, in which the body balances on its corner
+FEW = 1000  # up to this number of brackets, pieces take less time than rounds; above, bisection is used
 
 
 @dataclass(frozen=True)
@@ -35,9 +35,9 @@ class OverturningInterval:
 
     motion: int  # index of the motion
     start: float  # level at which overturning starts [unit of the measure]
-    # level at which overturning stops; infinite if the body overturns up to the last level
+    # level at which overturning stops [unit of the measure]; infinite if the body overturns up to the last level
     end: float
-    start_width: float  # start_width, end_width: widths of their brackets [unit of the measure]
+    start_width: float  # start_width, end_width: widths of the brackets of both levels [unit of the measure]
     end_width: float
 
     @property
@@ -53,7 +53,7 @@ class OutcomeBrackets:
     motion: IntArray  # index of the motion
     low: FloatArray  # low, high: the levels [unit of the measure]
     high: FloatArray
-    # before, after: side of overturning at either level: 1 right, -1 left, 0 without overturning
+    # before, after: side of overturning at the two levels: 1 right, -1 left, 0 without overturning
     before: IntArray
     after: IntArray
 
@@ -80,7 +80,10 @@ class OutcomeBrackets:
 
 
 def brackets_of(motion: IntArray, levels: FloatArray, sides: IntArray) -> OutcomeBrackets:
-    """Return neighbouring levels, increasing along each row, with different outcomes or sides of overturning."""
+    """Return pairs of neighbouring levels with different outcomes or sides of overturning.
+
+    Levels increase along rows.
+    """
     row, column = np.nonzero(sides[:, 1:] != sides[:, :-1])
     return OutcomeBrackets(
         motion[row], levels[row, column], levels[row, column + 1], sides[row, column], sides[row, column + 1]
@@ -88,11 +91,11 @@ def brackets_of(motion: IntArray, levels: FloatArray, sides: IntArray) -> Outcom
 
 
 def refined(brackets: OutcomeBrackets, outcomes: Outcomes, tolerance: float) -> OutcomeBrackets:
-    """Return brackets narrowed to a relative width [-]; each round cuts all brackets together."""
-    # Levels that overturn to the right and levels that overturn to the left are both open sets. Between two of them
-    # there is a level without overturning: the search looks for it, and splits the bracket. The first round keeps
-    # every change of outcome; later rounds keep the lowest in each bracket, so that a fractal boundary does not
-    # increase their number without limit. A bracket with a failed history is not changed.
+    """Return brackets narrowed to a relative width [-]. A round cuts all brackets together."""
+    # Levels with overturning to the right and levels with overturning to the left are both open sets. Between two of
+    # them, there is a level without overturning. The search looks for this level and splits the bracket. The first
+    # round keeps every change of outcome. Later rounds keep the lowest change per bracket, so that a fractal boundary
+    # does not increase the number of brackets without limit. A bracket with a failed history is not changed.
     done = brackets.chosen(slice(0, 0))
     first = True
     while len(brackets):
@@ -109,7 +112,7 @@ def refined(brackets: OutcomeBrackets, outcomes: Outcomes, tolerance: float) -> 
 def _cut(
     brackets: OutcomeBrackets, outcomes: Outcomes, parts: int, *, every: bool
 ) -> tuple[OutcomeBrackets, OutcomeBrackets]:
-    """Return the brackets with a failed history, and the pieces of the others."""
+    """Return the brackets with a failed history, and the pieces of the other brackets."""
     fraction = np.linspace(0.0, 1.0, parts + 1)
     levels = brackets.low[:, None] + fraction * (brackets.high - brackets.low)[:, None]
     levels[:, -1] = brackets.high
@@ -124,11 +127,11 @@ def _cut(
 
 
 def _lowest(pieces: OutcomeBrackets, parents: OutcomeBrackets) -> OutcomeBrackets:
-    """Return the lowest change of each bracket; between two sides the first stop and the start after it, if any."""
+    """Return the lowest change per bracket. Between two sides, the first stop and, if any, the next start."""
     meeting = parents.starts[pieces.motion] == parents.stops[pieces.motion]
     ends = pieces.starts | pieces.stops
     split = np.isin(pieces.motion, pieces.motion[ends])
-    # once a level without overturning is known, changes from side to side are omitted
+    # if a level without overturning is known, changes from side to side are omitted
     kept = pieces.chosen(ends | (meeting & ~split))
     n_wanted = np.where(parents.starts == parents.stops, 2, 1)[kept.motion]
     _, first, count = np.unique(kept.motion, return_index=True, return_counts=True)
@@ -138,7 +141,7 @@ def _lowest(pieces: OutcomeBrackets, parents: OutcomeBrackets) -> OutcomeBracket
 
 
 def intervals_of(brackets: OutcomeBrackets) -> list[OverturningInterval]:
-    """Return the intervals of levels with overturning, from their starts and stops."""
+    """Return the intervals of levels with overturning, from starts and stops."""
     brackets = brackets.chosen(brackets.starts | brackets.stops)
     intervals = []
     middle, width = 0.5 * (brackets.low + brackets.high), brackets.high - brackets.low
@@ -153,7 +156,7 @@ def intervals_of(brackets: OutcomeBrackets) -> list[OverturningInterval]:
 def overturning_intervals(
     stripes: MultipleStripeAnalysis, tolerance: float, threads: int | None = None
 ) -> list[OverturningInterval]:
-    """Return all intervals of levels with overturning, searched between the levels of stripes."""
+    """Return all intervals of levels with overturning, by a search between the levels of stripes."""
     subject, responses = stripes.subject, stripes.responses
     motion = np.flatnonzero(responses.good.all(axis=1))
     zero = np.zeros((motion.size, 1))
@@ -179,7 +182,7 @@ FRACTION = (
     "whatever they do below or above: that of the stripes"
 )
 
-OWN, RANDOM = -1, 2  # kinds of `ImpactLaw`: a user's law, and a law with sampled coefficients
+OWN, RANDOM = -1, 2  # kinds of `ImpactLaw`: a user-defined law, and a law with sampled coefficients
 
 OWN_LAW = (
     "The restitution is a user-defined law. The limits of the intervals are valid only if a repeated motion gives "
@@ -188,7 +191,7 @@ OWN_LAW = (
 
 
 def check_repeatable(law: ImpactLaw) -> None:
-    """Refuse a restitution that changes when a motion is repeated."""
+    """Raise an error for a restitution that changes when a motion is repeated."""
     if law.kind == RANDOM or law.per_history:
         raise InvalidValueError(
             "{parameter} must be repeatable, got {law}: sampled coefficients have no level at which overturning starts",
@@ -199,15 +202,15 @@ def check_repeatable(law: ImpactLaw) -> None:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class IncrementalDynamicAnalysis(MultipleStripeAnalysis):
-    """Result of an incremental dynamic analysis: the stripes, and the intervals between their levels.
+    """Result of an incremental dynamic analysis: stripes, and intervals between the levels of the stripes.
 
-    A body that a motion overturns may not overturn at a higher level of this motion (resurrection). Therefore two
-    definitions of the probability of overturning differ; the result contains both, with their names.
+    A body that overturns at one level of a motion may not overturn at a higher level (resurrection). Therefore, two
+    definitions of the probability of overturning differ. The result contains both, with their names.
     """
 
-    # all intervals of levels with overturning, by motion and level, of motions without a failed history. Survival
-    # between overturning to one side and to the other is always detected; other intervals that are narrower than the
-    # distance between levels may be missed
+    # all intervals of levels with overturning, by motion and level, for motions without a failed history; survival
+    # between overturning to one side and to the other side is always detected; other intervals that are narrower than
+    # the distance between levels may be missed
     intervals: tuple[OverturningInterval, ...]
 
     kind = "incremental"
@@ -216,7 +219,7 @@ class IncrementalDynamicAnalysis(MultipleStripeAnalysis):
 
     @property
     def curves(self) -> FloatArray:
-        """Rotation over alpha, infinite where overturned, of shape (motions, levels) [-]."""
+        """Rotation over alpha [-], shape (motions, levels); infinite for overturned bodies."""
         return self.responses.rotation
 
     @property
@@ -226,18 +229,18 @@ class IncrementalDynamicAnalysis(MultipleStripeAnalysis):
 
     @cached_property
     def complete(self) -> BoolArray:
-        """True for motions without a failed history; only these have a first crossing."""
+        """True for motions without a failed history. Only these motions have a first crossing."""
         return np.asarray(self.responses.good.all(axis=1))
 
     @property
     def fractions(self) -> FloatArray:
-        """Fraction of the motions that overturn the body at each level; NaN without a result [-]."""
+        """Fraction of the motions that overturn the body at every level [-]; NaN without a result."""
         with np.errstate(invalid="ignore"):
             return np.asarray(self.counts["overturned"] / self.trials)
 
     @cached_property
     def first_crossings(self) -> FloatArray:
-        """Lowest level at which each motion overturns the body; infinite if none, NaN after a failed history."""
+        """Lowest levels at which the motions overturn the body; infinite if never, NaN after a failed history."""
         crossings = np.where(self.complete, math.inf, math.nan)
         for interval in reversed(self.intervals):
             crossings[interval.motion] = interval.start
@@ -247,13 +250,14 @@ class IncrementalDynamicAnalysis(MultipleStripeAnalysis):
     def first_crossing_fit(self) -> CensoredFit | None:
         """Lognormal distribution of the first crossings; None if fewer than two motions overturn the body.
 
-        By moments if every motion overturns it, else by maximum likelihood with the others above the highest level.
+        If every motion overturns the body, the fit is by moments. Otherwise, the fit is by maximum likelihood, with the
+        other crossings above the highest level.
         """
         return fit_crossings(self.first_crossings[self.complete], float(self.levels[-1]))
 
     @property
     def survivals(self) -> list[tuple[int, float, float]]:
-        """Motion and ends of each interval without overturning above a level with overturning."""
+        """Motion and ends of the intervals without overturning above a level with overturning."""
         highest = float(self.levels[-1])
         return [
             (
@@ -266,8 +270,8 @@ class IncrementalDynamicAnalysis(MultipleStripeAnalysis):
         ]
 
     def resurrected(self, wider_than: float = 0.0) -> list[int]:
-        """Return the indices of motions with levels without overturning above a level with overturning."""
-        # a relative width such as WIDE excludes narrow survivals [-]
+        """Return the indices of motions that have levels without overturning above a level with overturning."""
+        # wider_than: a relative width [-] such as WIDE excludes narrow survivals
         min_width = checks.within("wider_than", wider_than, 0.0, 1e6)
         return sorted({motion for motion, low, high in self.survivals if high - low > min_width * low})
 
@@ -291,7 +295,7 @@ class IncrementalDynamicAnalysis(MultipleStripeAnalysis):
 
     @property
     def dataset(self) -> "xr.Dataset":
-        """All outcomes of the levels, the first crossings and the intervals, with their units."""
+        """Dataset of the outcomes at the levels, the first crossings and the intervals, with units."""
         rows = [(i.motion, i.start, i.end) for i in self.intervals]
         motion, start, end = (np.array(column) for column in zip(*rows, strict=True)) if rows else (np.empty(0),) * 3
         definitions = {f"definition_{name.replace(' ', '_')}": meaning for name, meaning in self.definitions.items()}
@@ -307,7 +311,7 @@ class IncrementalDynamicAnalysis(MultipleStripeAnalysis):
         )
 
     def summary(self) -> dict[str, Any]:
-        """Return both definitions with their curves, and the resurrections."""
+        """Return both definitions of the probability with their curves, and the resurrections."""
         first = self.first_crossing_fit
         return {
             **super().summary(),

@@ -1,4 +1,4 @@
-"""Compare the efficiency and sufficiency of intensity measures on the same histories."""
+"""Comparison of efficiency and sufficiency of intensity measures for the same histories."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -33,16 +33,16 @@ class MeasureScore:
 
     im: str  # im, unit: name and unit of the measure
     unit: str
-    # standard deviation of ln(theta/alpha) about its regression on ln of the measure, of histories that rocked
-    # without overturning: with a smaller one, fewer motions are needed [-]
+    # standard deviation of ln(theta/alpha) about its regression on ln of the measure, for histories that rocked
+    # without overturning [-]; with a smaller value, fewer motions are needed
     efficiency: float
-    slope: float  # slope of that line [-]
-    proficiency: float  # efficiency over the absolute slope: equivalent dispersion of the measure [-]
-    determination: float  # R squared of that line [-]
-    overturning_dispersion: float  # dispersion of the lognormal curve of overturning; NaN if there is none [-]
-    overturning_verdict: str  # verdict on that curve
-    # p-value of the slope of the residuals over each column of the metadata: a small value shows that the measure
-    # does not include the effect of the column [-]
+    slope: float  # slope of the regression [-]
+    proficiency: float  # efficiency divided by the absolute slope: equivalent dispersion of the measure [-]
+    determination: float  # R squared of the regression [-]
+    overturning_dispersion: float  # dispersion of the lognormal curve of overturning [-]; NaN if there is no curve
+    overturning_verdict: str  # verdict on the curve of overturning
+    # p-values of the slopes of the residuals over the columns of the metadata [-]; a small value shows that the measure
+    # does not include the effect of the column
     sufficiency: Mapping[str, float]
     rocked: int  # rocked, overturned: numbers of histories of the regression and the curve
     overturned: int
@@ -51,12 +51,12 @@ class MeasureScore:
 
 @dataclass(frozen=True)
 class MeasureComparison:
-    """Measures of intensity ranked by efficiency, the best first."""
+    """Intensity measures ranked by efficiency, with the best measure first."""
 
-    scores: tuple[MeasureScore, ...]  # one per measure
-    # measures without a rank, with the reason: they are equal for all motions
+    scores: tuple[MeasureScore, ...]  # one score per measure
+    # measures without a rank, because their values are equal for all motions, with the reason
     left_out: Mapping[str, str]
-    min_rotation: float = MIN_ROTATION  # rotation over alpha below which a history counts as barely lifted [-]
+    min_rotation: float = MIN_ROTATION  # limit of the rotation over alpha for barely lifted histories [-]
 
     @property
     def best(self) -> str:
@@ -64,7 +64,7 @@ class MeasureComparison:
         return self.scores[0].im
 
     def rows(self) -> list[dict[str, Any]]:
-        """Return rank, the fields of `MeasureScore`, and ``p(name)`` for each column of the metadata."""
+        """Return rank, the fields of `MeasureScore`, and ``p(name)`` for all columns of the metadata."""
         rows = []
         for rank, score in enumerate(self.scores, 1):
             fields = {name: value for name, value in vars(score).items() if name != "sufficiency"}
@@ -85,25 +85,26 @@ def compare_measures(
     min_rotation: float | None = None,
     progress: Progress = None,
 ) -> MeasureComparison:
-    """Rank measures of intensity by their efficiency for the histories of one cloud analysis.
+    """Rank intensity measures by their efficiency for the histories of one cloud analysis.
 
-    Efficiency is that of Luco & Cornell 2007 (Earthquake Spectra 23:357): the scatter of the response given the
-    measure. Sufficiency is tested by the residuals: given the measure, nothing else of the motion should matter. With
-    several columns and measures some p-values are below 0.05 by chance.
+    Efficiency is the scatter of the response for a given measure (Luco & Cornell 2007, Earthquake Spectra 23:357).
+    Sufficiency is tested by the residuals: for a given measure, other properties of the motion should have no effect.
+    With several columns and measures, some p-values are below 0.05 by chance.
 
     Parameters
     ----------
     analysis : CloudAnalysis
-        The histories, common to all measures.
+        The histories, which are common to all measures.
     ims : sequence of str or IntensityMeasure
         The measures.
     metadata : mapping of str to array_like, optional
-        Quantities of the motions, such as magnitude, ln of the distance, duration; one number per motion.
+        Quantities of the motions, one number per motion, such as magnitude, ln of the distance or duration.
     min_rotation : float, optional
-        Smallest rotation over alpha of a history in the regressions: the logarithms of very small rotations would
-        dominate them. Default: the value of the analysis [-].
+        Smallest rotation over alpha of a history in the regressions [-]. Without a limit, the logarithms of very small
+        rotations would dominate. Default: the value of the analysis.
     progress : callable, optional
-        Called with the number of motions measured since the last call; all are measured once for each measure.
+        Function called with the number of motions measured since the last call. All motions are measured once per
+        measure.
 
     Returns
     -------
@@ -113,8 +114,8 @@ def compare_measures(
     Raises
     ------
     InvalidValueError
-        If no measure is named, one twice, none varies, a column does not fit the motions, or fewer than three
-        histories rocked.
+        If no measure is named, if a measure is named twice, if no measure varies, if a column does not fit the motions,
+        or if fewer than three histories rocked.
 
     Examples
     --------
@@ -148,7 +149,7 @@ def compare_measures(
 
 
 def replace_measure(analysis: CloudAnalysis, name: Any) -> CloudAnalysis:
-    """Return the same histories with another measure; computes the measure and its fits only."""
+    """Return the same histories with another measure. Only the measure and its fits are computed."""
     subject = replace(analysis.subject, measure=measure(name))
     factor = float(np.asarray(analysis.histories.scales).ravel()[0])
     return replace(analysis, subject=subject, motion_levels=subject.measure.scaled(subject.intensities, factor))

@@ -1,4 +1,4 @@
-"""Multiple stripes: every motion scaled to every level of the measure, with counts of the states."""
+"""Multiple stripes: every motion is scaled to every level of the measure, and states are counted."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -20,9 +20,9 @@ DEFINITION = (
 
 @dataclass(frozen=True, eq=False, repr=False)
 class MultipleStripeAnalysis(FragilityAnalysis):
-    """Result of a multiple stripe analysis; states and rotations have the shape (motions, levels)."""
+    """Result of a multiple stripe analysis. States and rotations have the shape (motions, levels)."""
 
-    levels: FloatArray  # levels of the measure [its unit]
+    levels: FloatArray  # levels of the measure [unit of the measure]
 
     kind = "multiple stripes"
     definition = DEFINITION
@@ -43,7 +43,7 @@ class MultipleStripeAnalysis(FragilityAnalysis):
 
     @cached_property
     def dataset(self) -> "xr.Dataset":
-        """All outcomes, counts and factors with their units, over motion and level."""
+        """Dataset of outcomes, counts and factors with units, over motion and level."""
         both = ("motion", "level")
         names = [state.name for state in self.limit_states]
         data: dict[str, Any] = {

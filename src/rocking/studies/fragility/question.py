@@ -1,4 +1,4 @@
-"""A fragility analysis before it is computed: its subject, its histories, and the analysis of their results."""
+"""A fragility analysis before the computation: subject, histories, and analysis of their results."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -23,19 +23,19 @@ from rocking.studies.histories import Product, results_of
 
 ANALYSES = ("stripes", "cloud", "incremental")
 
-_MOST_FACTOR = 1e6  # on a motion, as in all histories [-]
+_MOST_FACTOR = 1e6  # largest scale factor of a motion, as in all histories [-]
 _REACH = (0.9, 9.0, 16)
-"""Default levels: lowest and highest over the uplift level, number; in equal ratios."""
+"""Default levels in equal ratios: lowest and highest level over the uplift level, and number of levels."""
 
 
 @dataclass(frozen=True, eq=False)
 class FragilityQuestion:
-    """A subject and the requested analysis, with its histories."""
+    """A subject, the requested analysis, and its histories."""
 
     subject: Subject
     analysis: str  # one of `ANALYSES`
     limit_states: tuple[LimitState, ...]
-    levels: FloatArray  # levels of the stripes; for a cloud the level of each motion [unit of the measure]
+    levels: FloatArray  # levels of the stripes, or for a cloud the levels of the motions [unit of the measure]
     histories: Product
     min_rotation: float  # smallest rotation over alpha of a history in the regression of a cloud [-]
     tolerance: float  # relative width at which an incremental search ends [-]
@@ -46,7 +46,7 @@ class FragilityQuestion:
         limit_states: Sequence[float | str] = (0.5,), *, scale: float | None = None, min_rotation: float | None = None,
         tolerance: float | None = None,
     ) -> Self:  # fmt: skip
-        """Return the question with parameters as for `rocking.fragility`; computes intensities only."""
+        """Return the question. Parameters are those of `rocking.fragility`. Only intensities are computed."""
         kind, measure = checks.one_of("analysis", analysis, ANALYSES), subject.measure
         odd = [name for name, value in (("scale", scale), ("min_rotation", min_rotation)) if value is not None]
         if odd and kind != "cloud":
@@ -70,7 +70,7 @@ class FragilityQuestion:
         return cls(subject, kind, limit_states_of(limit_states), at, histories, min_rotation, tolerance)
 
     def answer(self, arrays: Arrays, threads: int | None = None) -> MultipleStripeAnalysis | CloudAnalysis:
-        """Return the analysis of the results of the histories; an incremental analysis searches its intervals here."""
+        """Return the analysis of the results of the histories. An incremental analysis then searches its intervals."""
         shape = (len(self.subject.motions), *(self.levels.shape if self.analysis != "cloud" else ()))
         responses = Responses.of(arrays, self.subject.parameters, shape)
         common = self.subject, self.limit_states, self.histories, responses, self.levels
@@ -82,12 +82,12 @@ class FragilityQuestion:
         return IncrementalDynamicAnalysis(*common, tuple(overturning_intervals(stripes, self.tolerance, threads)))
 
     def computed(self, threads: int | None = None, progress: Progress = None) -> MultipleStripeAnalysis | CloudAnalysis:
-        """Return the analysis, its histories computed in memory."""
+        """Return the analysis. The histories are computed in memory."""
         return self.answer(results_of(self.histories, threads=threads, progress=progress), threads)
 
 
 def _check_factors(subject: Subject, factors: FloatArray) -> None:
-    """Refuse a motion that needs a scale factor above the limit to reach the levels, such as a dead channel."""
+    """Raise an error if a motion, such as a dead channel, needs a scale factor above the limit."""
     lowest = np.atleast_2d(factors).min(axis=1)
     if (worst := int(lowest.argmax())) >= 0 and not lowest[worst] <= _MOST_FACTOR:
         value, unit = float(subject.intensities[worst]), subject.measure.unit
@@ -100,7 +100,7 @@ def _check_factors(subject: Subject, factors: FloatArray) -> None:
 
 
 def default_levels(subject: Subject) -> FloatArray:
-    """Return levels around the uplift level of the body, for a measure that has one [its unit]."""
+    """Return levels around the uplift level of the body, for a measure with an uplift level."""
     if subject.measure.uplift is None:
         raise InvalidValueError(
             "levels of {measure} are missing. Add levels in {unit}.",

@@ -1,4 +1,4 @@
-"""Common parts of all fragility analyses: a body under motions, limit states of its responses, and their curves."""
+"""Common parts of fragility analyses: a body under motions, limit states of its responses, and curves."""
 
 import json
 import math
@@ -44,17 +44,17 @@ _ROCKED = Outcome.ROCKED, Outcome.ROCKED_AND_SLID, Outcome.FLEW
 
 @dataclass(frozen=True, eq=False)
 class Subject:
-    """A body with its restitution, a set of motions, and the measure of their intensity."""
+    """A body with its restitution, a set of motions, and the intensity measure."""
 
     parameters: RockingParameters  # parameters of the equations of the body
     motions: MotionSet
     measure: IntensityMeasure
-    settings: Settings  # of the integration
+    settings: Settings  # settings of the integration
     engine: str = "auto"  # name of the engine
 
     @classmethod
     def of(cls, body: Body, motions: Motions, restitution: Any, measure_name: Any, options: dict[str, Any]) -> Self:
-        """Return the subject of an analysis; options: gravity [m/s2], engine and other fields of `Settings`."""
+        """Return the subject of an analysis. Options are gravity [m/s2], engine and other fields of `Settings`."""
         remaining = dict(options)
         engine = remaining.pop("engine", "auto")
         settings = study_settings(body, remaining, remaining.pop("gravity", conventions.g))
@@ -64,7 +64,7 @@ class Subject:
 
     @cached_property
     def scale(self) -> RockingScale:
-        """Quantities of the body for the measures, from the side that lifts first."""
+        """Quantities of the body for the measures, taken from the side that lifts first."""
         side = min(self.parameters.right, self.parameters.left, key=lambda s: s.slenderness_angle)
         alpha, gravity = side.slenderness_angle, self.settings.gravity
         tangent = alpha if self.settings.linear else math.tan(alpha)  # Eq. 25
@@ -72,14 +72,14 @@ class Subject:
 
     @cached_property
     def intensities(self) -> FloatArray:
-        """Measure of each motion as recorded [unit of the measure]."""
+        """Measures of the motions as recorded [unit of the measure]."""
         return self.measure.values(self.motions, self.scale)
 
     @cached_property
     def uplift_threshold(self) -> float | None:
-        """Level above which every motion lifts the body, and below which none does; None if the measure has none.
+        """Level above which all motions lift the body and below which no motion does; None if there is no such level.
 
-        It exists for a body with equal sides that has a `lowest_uplift`.
+        This level exists for a body with equal sides that has a `lowest_uplift`.
         """
         equal = math.isclose(
             self.parameters.right.slenderness_angle, self.parameters.left.slenderness_angle, rel_tol=1e-12
@@ -88,13 +88,14 @@ class Subject:
 
     @cached_property
     def lowest_uplift(self) -> float | None:
-        """Level below which no motion lifts the body (its weaker side); None if the measure has none.
+        """Level below which no motion lifts the body (its weaker side); None if there is no such level.
 
-        It exists for PGA, absolute or normalised, under horizontal motions of a body that does not slide before uplift.
+        This level exists for PGA, absolute or normalised, under horizontal motions, for a body that does not slide
+        before uplift.
         """
         settings = self.settings
         if not mechanics_of(settings).in_plane:
-            return None  # it depends on the direction
+            return None  # the level depends on the direction
         if self.measure.uplift is None or settings.friction * settings.gravity <= self.scale.threshold:
             return None
         return self.measure.uplift(self.scale) if self.are_horizontal else None
@@ -111,13 +112,13 @@ class Subject:
 
     @cached_property
     def are_horizontal(self) -> bool:
-        # without the names: for ten million motions they need more memory than all results
+        # names are omitted, because the names of ten million motions need more memory than all results
         return all(getattr(self.motions[k], "vertical", None) is None for k in range(len(self.motions)))
 
     @cached_property
     def clusters(self) -> IntArray:
-        """Index of the first motion with samples equal to those of each motion."""
-        # only motions of equal intensity are compared: to generate all motions of a large set again takes long
+        """For every motion, index of the first motion with equal samples."""
+        # only motions with equal intensity are compared, because generating all motions of a large set again takes long
         _, group, size = np.unique(self.intensities, return_inverse=True, return_counts=True)
         clusters, first = np.arange(len(self.motions)), dict[str, int]()
         for k in np.flatnonzero(size[group] > 1).tolist():
@@ -126,9 +127,9 @@ class Subject:
 
     @cached_property
     def support(self) -> str:
-        """Support of the motions: "ground", a floor, or several of them."""
+        """Support of the motions: "ground", a floor, or several supports."""
         if not isinstance(self.motions, MotionList):
-            return GROUND  # families are of the ground
+            return GROUND  # motions of families are motions of the ground
         return ", ".join(dict.fromkeys(support_of(self.motions[k]) for k in range(len(self.motions))))
 
     @property
@@ -154,7 +155,7 @@ class Subject:
         )
 
     def table(self, motion: np.ndarray, factors: FloatArray) -> HistoryTable:
-        """Return a table of histories from the indices of their motions and their scale factors [-]."""
+        """Return a table of histories from indices of motions and scale factors [-]."""
         return HistoryTable(
             self.motions, motion, self._sides | {"scale": factors},
             law=self.parameters.law, settings=self.settings, engine=self.engine,
@@ -162,7 +163,7 @@ class Subject:
 
     @property
     def _provenance(self) -> str:
-        """Source and processing of the motions; the description of a family."""
+        """Source and processing of the motions, or description of a family."""
         if not isinstance(self.motions, MotionList):
             return json.dumps(self.motions.description())
         return json.dumps([list(provenance_of(self.motions[k])) for k in range(len(self.motions))])
@@ -184,7 +185,7 @@ class Subject:
 
 
 def checked_levels(name: str, values: Any, unit: str) -> FloatArray:
-    """Return levels of a measure [its unit] if they are above zero and increase."""
+    """Return levels of a measure. Raise an error if they are not above zero or do not increase."""
     levels = np.atleast_1d(checks.positive_array(name, values, unit)).copy()
     if levels.ndim != 1 or not levels.size:
         raise InvalidValueError(parameter=name, allowed=f"a row of numbers [{unit}]", value=values)
@@ -194,19 +195,20 @@ def checked_levels(name: str, values: Any, unit: str) -> FloatArray:
 
 @dataclass(frozen=True)
 class LimitState:
-    """A state that a history reaches or does not; a history that reaches a state has reached all lesser states."""
+    """A limit state. A history that reaches a state has reached all lesser states."""
 
     name: str  # ``rocking``, ``rotation > 0.5 alpha`` or ``overturned``
-    level: float  # rotation over alpha to exceed: 0 for rocking, infinite for overturning [-]
+    level: float  # rotation over alpha that must be exceeded [-]: 0 for rocking, infinite for overturning
 
 
 NAMED = {"rocking": LimitState("rocking", 0.0), "overturning": LimitState("overturned", math.inf)}
 
 
 def limit_states_of(levels: Sequence[float | str] = (0.5,)) -> tuple[LimitState, ...]:
-    """Return limit states from the mildest: rotations over alpha (increasing [-]), ``rocking``, ``overturning``.
+    """Return limit states, the mildest first, from rotations over alpha (increasing) and names.
 
-    Rocking and overturning are added to numbers; a sequence with a name is complete.
+    If the sequence contains only numbers, rocking and overturning are added. A sequence with a name (``rocking``,
+    ``overturning``) is complete.
     """
     items: Any = [levels] if isinstance(levels, str) else levels
     names = [level for level in items if isinstance(level, str)] if isinstance(items, list | tuple) else []
@@ -237,18 +239,18 @@ def _rotations(levels: Any) -> tuple[LimitState, ...]:
 
 @dataclass(frozen=True, eq=False)
 class Responses:
-    """Results of histories, of any shape, from which limit states are evaluated."""
+    """Results of histories, with any shape, for the evaluation of limit states."""
 
     outcome: np.ndarray  # codes of `Outcome`
-    # largest rotation over the alpha of its side; infinite if overturned, NaN if the history failed [-]
+    # largest rotation over the alpha of its side [-]; infinite if overturned, NaN if the history failed
     rotation: FloatArray
-    sides: np.ndarray  # side overturned to: 1 right, -1 left, 0 if it did not
-    # 1 for a tensile contact force, as of `lost_contact`; None if not computed [-]
+    sides: np.ndarray  # side of overturning: 1 right, -1 left, 0 without overturning
+    # 1 for a tensile contact force, as in `lost_contact` [-]; None if not computed
     lost: FloatArray | None = None
 
     @classmethod
     def of(cls, arrays: Arrays, parameters: Any, shape: tuple[int, ...]) -> "Responses":
-        """Return the responses of one body from results, in the given shape."""
+        """Return the responses of one body from results, with a given shape."""
         missing = {"outcome", "peak_rotation"} - set(arrays)
         sizes = {np.size(arrays[name]) for name in ("outcome", "peak_rotation") if name in arrays}
         if missing or sizes != {math.prod(shape)}:
@@ -261,7 +263,7 @@ class Responses:
         peak = np.asarray(arrays["peak_rotation"], dtype=np.float64).reshape(shape)
         right, left = parameters.right.slenderness_angle, parameters.left.slenderness_angle
         over, to_right = outcome == Outcome.OVERTURNED.code, peak > 0.0
-        rotation = np.abs(peak)  # up to ten million: avoid copies
+        rotation = np.abs(peak)  # there may be ten million values, so that copies are avoided
         rotation /= right if right == left else np.where(to_right, right, left)
         rotation[over], rotation[outcome == Outcome.FAILED.code] = math.inf, math.nan
         lost = lost_contact(arrays).reshape(shape) if "least_force" in arrays else None
@@ -274,12 +276,12 @@ class Responses:
 
     @property
     def good(self) -> BoolArray:
-        """True for histories that could be computed."""
+        """True for histories with a result."""
         return np.asarray(self.outcome != Outcome.FAILED.code)
 
     @property
     def rocked(self) -> BoolArray:
-        """True for histories that rocked without overturning; a flat hop is not rocking."""
+        """True for histories that rocked without overturning. A flat hop is not rocking."""
         hopped = (self.outcome == Outcome.FLEW.code) & ~(self.rotation > 0.0)
         return np.asarray(np.isin(self.outcome, [outcome.code for outcome in _ROCKED]) & ~hopped)
 
@@ -289,7 +291,7 @@ class Responses:
         return overturned(self.outcome)
 
     def exceed(self, state: LimitState) -> FloatArray:
-        """Return 1 for histories that reached a limit state, 0 for those that did not, NaN without a result [-]."""
+        """Return 1 for histories that reached a limit state, 0 for other histories, NaN without a result [-]."""
         if state.level == 0.0:
             return of_results(self.outcome, self.rocked | (self.overturned == 1.0))
         if math.isinf(state.level):
@@ -309,7 +311,7 @@ class Responses:
         return variables
 
     def counts(self) -> dict[Outcome, int]:
-        """Return the number of histories by outcome, without those that failed."""
+        """Return the number of histories by outcome, without failed histories."""
         counts = {outcome: int((self.outcome == outcome.code).sum()) for outcome in Outcome}
         del counts[Outcome.FAILED]
         always = Outcome.NO_UPLIFT, Outcome.ROCKED, Outcome.OVERTURNED
@@ -318,16 +320,16 @@ class Responses:
 
 @dataclass(frozen=True)
 class UpliftCheck:
-    """Check of the histories against the theory: rocking above PGA = g tan(alpha), none below."""
+    """Check of the histories against theory: rocking above PGA = g tan(alpha), and no rocking below."""
 
-    # uplift level [unit of the measure]; None if the measure has none
+    # uplift level [unit of the measure]; None if the measure has no uplift level
     threshold: float | None
-    checked: int  # histories that were compared; those within 1e-9 of the threshold are not
-    contradictions: int  # histories that rocked below it or did not above it
+    checked: int  # number of compared histories; histories within 1e-9 of the threshold are not compared
+    contradictions: int  # number of histories that rocked below the threshold or did not rock above it
 
     @property
     def verdict(self) -> str:
-        """The result as a sentence."""
+        """The result of the check as a sentence."""
         if self.threshold is None:
             return "no level of this measure alone decides whether the body rocks"
         return (
@@ -337,7 +339,7 @@ class UpliftCheck:
 
 
 def uplift_check(subject: Subject, levels: FloatArray, responses: Responses) -> UpliftCheck:
-    """Return the check of histories at their levels [unit of the measure] against the threshold of uplift."""
+    """Return the check of histories at levels [unit of the measure] against the threshold of uplift."""
     threshold = subject.uplift_threshold
     if threshold is None:
         return UpliftCheck(None, 0, 0)
@@ -349,7 +351,7 @@ def uplift_check(subject: Subject, levels: FloatArray, responses: Responses) -> 
 def fits_of(
     subject: Subject, limit_states: Sequence[LimitState], levels: FloatArray, responses: Responses
 ) -> dict[str, LognormalFit]:
-    """Return the lognormal curve of each state, of histories at levels [unit of the measure]."""
+    """Return the lognormal curves of the states, for histories at levels [unit of the measure]."""
     uncertain = [state for state in limit_states if state.level > 0.0 or subject.uplift_threshold is None]
     reached = [responses.exceed(state) == 1.0 for state in uncertain]
     counts = pooled(levels, responses.good, reached, subject.clusters)
@@ -358,11 +360,11 @@ def fits_of(
 
 @dataclass(frozen=True, eq=False, repr=False)
 class FragilityAnalysis(ABC):
-    """Base of all fragility analyses: histories of one subject, the states that they reached, and their curves."""
+    """Base class of fragility analyses: histories of one subject, reached states, and curves."""
 
     subject: Subject
     limit_states: tuple[LimitState, ...]  # from rocking to overturned
-    histories: Product  # computed histories
+    histories: Product  # the computed histories
     responses: Responses
 
     kind: ClassVar[str]
@@ -376,20 +378,20 @@ class FragilityAnalysis(ABC):
     @property
     @abstractmethod
     def history_levels(self) -> FloatArray:
-        """Level of each history, in the shape of the responses [unit of the measure]."""
+        """Levels of the histories, with the shape of the responses [unit of the measure]."""
 
     @property
     def failed(self) -> int:
-        """Number of histories that could not be computed; no count includes them."""
+        """Number of failed histories. Other counts exclude them."""
         return int((~self.responses.good).sum())
 
     @cached_property
     def fits(self) -> dict[str, LognormalFit]:
-        """Lognormal curve of each state from the outcomes; none for rocking if a level decides it."""
+        """Lognormal curves of the states from the outcomes. Rocking has no curve if the uplift level decides it."""
         return fits_of(self.subject, self.limit_states, self.history_levels, self.responses)
 
     def fit_of(self, name: str) -> LognormalFit:
-        """Return the curve of ``rocking`` or ``overturning``, also if it is not among the states."""
+        """Return the curve of ``rocking`` or ``overturning``, even if it is not among the states."""
         state = NAMED[name]
         if state.name in self.fits:
             return self.fits[state.name]
@@ -397,7 +399,7 @@ class FragilityAnalysis(ABC):
 
     @property
     def verdicts(self) -> dict[str, list[str]]:
-        """Verdicts on curves that are no maximum of the likelihood, with their states; without those on intervals."""
+        """Verdicts, by state, on curves that are not a maximum of the likelihood; without verdicts on intervals."""
         limit_states: dict[str, list[str]] = {}
         for name, fit in self.fits.items():
             if fit.separation is not Separation.OVERLAP or not fit.exists:
@@ -419,7 +421,7 @@ class FragilityAnalysis(ABC):
         return labelled
 
     def summary(self) -> dict[str, Any]:
-        """Return definition, check and curves as plain values, medians in the unit of the measure."""
+        """Return definition, check and curves as plain values. Medians are in the unit of the measure."""
         return {
             "analysis": self.kind,
             "definition": self.definition,

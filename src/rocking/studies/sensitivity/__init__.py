@@ -1,4 +1,4 @@
-"""Sensitivity of maps, spectra and fragility to the restitution, with the changed verdicts."""
+"""Sensitivity of maps, spectra and fragility to the restitution, with changed verdicts."""
 
 from rocking.studies.sensitivity.comparison import (
     Sensitivity,

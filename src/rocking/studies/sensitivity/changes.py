@@ -17,8 +17,8 @@ from rocking.statistics.maximum_likelihood import LogScale, find_curves, log_dis
 if TYPE_CHECKING:
     import xarray as xr
 
-UNKNOWN = 2  # in a map of flips: one of the two histories could not be computed
-LEVEL = 0.95  # confidence of the intervals [-]
+UNKNOWN = 2  # value in a map of flips if one of the two histories could not be computed
+LEVEL = 0.95  # confidence level of the intervals [-]
 _SIGNED = "peak_rotation"
 
 
@@ -27,14 +27,14 @@ class Flips:
     """Numbers of histories with different verdicts (overturned or not) in two results."""
 
     count: int  # number of different verdicts
-    only_second: int  # number of these that overturn in the second result only
+    only_second: int  # number of histories that overturn only in the second result
     compared: int  # number of histories with a verdict in both results
     unknown: int  # number of histories that failed in one of the results
-    # 95 % interval of the fraction for other motions or samples of the same kind; NaN without motions and samples,
-    # since the cells of a grid are not a random sample [-]
+    # 95 % interval of the fraction for other motions or samples of the same kind [-]; NaN without motions and samples,
+    # because the cells of a grid are not a random sample
     fraction_low: float
     fraction_high: float
-    # number of independent motions in the interval; 0 if all histories are independent, or without an interval
+    # number of independent motions for the interval; 0 if all histories are independent, or without an interval
     clusters: int = 0
 
     @property
@@ -44,7 +44,7 @@ class Flips:
 
     @property
     def only_first(self) -> int:
-        """Number of histories that overturn in the first result only."""
+        """Number of histories that overturn only in the first result."""
         return self.count - self.only_second
 
 
@@ -66,7 +66,7 @@ def flips_of(first: Any, second: Any, motions: Any = None, *, sampled: bool = Fa
 
 
 def flip_map(first: Any, second: Any) -> np.ndarray:
-    """Return 0 for equal verdicts, 1 overturned in the second only, -1 in the first only, 2 without a verdict."""
+    """Return 0 for equal verdicts, 1 (-1) if only the second (first) overturned, and 2 without a verdict."""
     a, b = _codes(first), _codes(second)
     if a.shape != b.shape:
         raise InvalidValueError(
@@ -78,7 +78,7 @@ def flip_map(first: Any, second: Any) -> np.ndarray:
 
 
 def difference_of(first: "xr.Dataset", second: "xr.Dataset", name: str) -> "xr.DataArray":
-    """Return second minus first value (absolute peaks); NaN unless both histories have no overturning."""
+    """Return second value minus first value (absolute peaks); NaN unless both histories are without overturning."""
     if name == "verdict":
         flag = "-1 overturned in the baseline only, 0 same verdict, 1 overturned only here, 2 one of the two failed"
         flips = first["outcome"].copy(data=flip_map(first["outcome"].values, second["outcome"].values))
@@ -89,7 +89,7 @@ def difference_of(first: "xr.Dataset", second: "xr.Dataset", name: str) -> "xr.D
     upright = [~result["outcome"].isin([Outcome.OVERTURNED.code, Outcome.FAILED.code]) for result in (first, second)]
     before, after = (result[name].astype(np.float64) for result in (first, second))
     label = name
-    if name == _SIGNED:  # the difference of 0.1 to the right and 0.1 to the left is 0
+    if name == _SIGNED:  # absolute values, so that the difference of 0.1 to the right and 0.1 to the left is 0
         before, after, label = abs(before), abs(after), f"the absolute {name}"
     difference = after - before
     units = first[name].attrs.get("units", "1")
@@ -110,7 +110,7 @@ def _effective(flipped: FloatArray, groups: np.ndarray | None) -> tuple[float, i
     """Return the effective number of independent histories, and the number of motions."""
     from scipy.special import stdtrit
 
-    # Korn & Graubard 1998 (Survey Methodology 24:193): the size whose binomial variance is that between the motions
+    # Korn & Graubard 1998 (Survey Methodology 24:193): size whose binomial variance is the variance between motions
     if groups is None:
         return float(flipped.size), 0
     _, cluster, counts = np.unique(groups, return_inverse=True, return_counts=True)
@@ -122,7 +122,7 @@ def _effective(flipped: FloatArray, groups: np.ndarray | None) -> tuple[float, i
     excess = np.bincount(cluster, flipped - fraction)
     variance = clusters / (clusters - 1) * float(excess @ excess) / flipped.size**2
     size = fraction * (1.0 - fraction) / variance if variance > 0.0 else float(flipped.size)  # Eq. 188
-    # for a variance estimated from few motions
+    # correction for a variance that is estimated from few motions
     few, many = stdtrit(np.array([clusters, flipped.size]) - 1, 0.5 * (1.0 + LEVEL))
     return min(max(size * float((many / few) ** 2), 1.0), float(flipped.size)), clusters
 
@@ -136,7 +136,7 @@ class Change:
     """A number with its 95 % interval from resampled motions."""
 
     value: float  # the number
-    # ends; None if more than 2.5 % of the resampled sets have no curve
+    # ends of the interval; None if more than 2.5 % of the resampled sets have no curve
     interval: tuple[float, float] | None
 
 
@@ -144,16 +144,16 @@ class Change:
 class CurveChange:
     """Differences between two lognormal fragility curves."""
 
-    median: Change  # second median over the first [-]
-    dispersion: Change  # second dispersion minus the first [-]
+    median: Change  # second median over first median [-]
+    dispersion: Change  # second dispersion minus first dispersion [-]
     # largest absolute difference of the probabilities [-]; its interval never contains zero
     distance: Change
     level: float  # level of the largest difference [unit of the measure]
     repetitions: int  # number of resampled sets of motions, common to both curves
-    without_curve: int  # number of sets without one of the curves
+    without_curve: int  # number of sets in which a curve is missing
 
     def text(self, unit: str, size: float = 1.0) -> str:
-        """Return the changes as a phrase, with levels in a unit of the measure; size: of this unit."""
+        """Return the changes as a phrase, with levels in a unit of the measure. `size` is the size of this unit."""
         formatted = "{:+.3f}".format
         ends = self.median.interval
         median = None if ends is None else (ends[0] - 1.0, ends[1] - 1.0)
@@ -184,7 +184,7 @@ def curve_change(
     seed: int = 0,
 ) -> CurveChange:
     """Return the differences between two fragility curves (median, dispersion), with 95 % intervals."""
-    # The intervals are from motions sampled with replacement. Both curves of a repetition are fitted to the same
+    # The intervals result from motions sampled with replacement. Both curves of a repetition are fitted to the same
     # motions, so that common effects of the motions cancel.
     at = checks.positive_array("levels", levels)
     if at.ndim != 1 or at.size < 2:
@@ -211,7 +211,7 @@ def curve_change(
 
 
 def _differences(log_median: FloatArray, dispersion: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return ratio of the medians, difference of the dispersions and largest distance of pairs of curves."""
+    """Return ratio of medians, difference of dispersions and largest distance for pairs of curves."""
     ratio = np.exp(log_median[1] - log_median[0])
     return ratio, dispersion[1] - dispersion[0], curve_distance(log_median, dispersion)[0]
 
@@ -228,7 +228,7 @@ def curve_distance(log_median: FloatArray, dispersion: FloatArray) -> tuple[Floa
 
 
 def fits(levels: FloatArray, failures: FloatArray, trials: FloatArray) -> FloatArray:
-    """Return ln of the median, and dispersion, of many sets of stripes; NaN without a curve."""
+    """Return ln of the median, and dispersion, of many sets of stripes; NaN if there is no curve."""
     x = np.log(levels)
     scale = LogScale(float(x.mean()), float(x.std()))
     theta = find_curves(levels, scale, failures, trials).theta

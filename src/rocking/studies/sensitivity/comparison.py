@@ -45,12 +45,12 @@ class Sensitivity:
     seed : int
         Random seed of the samples.
     sampled : collection of str
-        Names of the choices with random coefficients: other samples may change other verdicts.
+        Names of the choices with random coefficients, for which other samples may change other verdicts.
 
     Raises
     ------
     InvalidValueError
-        If a result has no outcome, results have different shapes, or a choice is unknown.
+        If a result has no outcome, if results have different shapes, or if a choice is unknown.
     """
 
     results: dict[str, Any]
@@ -100,8 +100,9 @@ class Sensitivity:
         Returns
         -------
         Flips
-            The counts. In the interval, motions are independent if there are several, otherwise the samples of the
-            histories; without samples the interval is NaN. For a choice compared with itself it is zero.
+            The counts. If there are several motions, the interval assumes independent motions; otherwise it assumes
+            independent samples of the histories. Without samples, the interval is NaN. For a choice compared with
+            itself, it is zero.
         """
         first, second = (checks.one_of("choice", label, self.labels) for label in (first, second))
         a, b = (self.datasets[label]["outcome"] for label in (first, second))
@@ -119,8 +120,9 @@ class Sensitivity:
         Returns
         -------
         xarray.Dataset
-            Over ``first, second``: count, only_second (overturned in the second only), only_first, compared, unknown,
-            and the fraction with its 95 % interval, missing without several motions or random coefficients.
+            Dataset over ``first, second``: count, only_second (overturned only in the second), only_first, compared,
+            unknown, and the fraction with its 95 % interval. The interval is missing without several motions or random
+            coefficients.
         """
         xarray = extra("xarray", "a table of flips")
         pairs = [self.flips_between(first, second) for first, second in product(self.labels, self.labels)]
@@ -137,13 +139,14 @@ class Sensitivity:
         Parameters
         ----------
         name : str
-            ``verdict`` (-1 overturned with the baseline only, 0 equal verdicts, 1 overturned with the choice only, 2
-            failed with one of them), or a variable of the results such as ``peak_ratio``.
+            ``verdict`` (-1 overturned only with the baseline, 0 equal verdicts, 1 overturned only with the choice, 2
+            failed with one of the two), or a variable of the results such as ``peak_ratio``.
 
         Returns
         -------
         xarray.DataArray
-            Over ``restitution`` and the dimensions of the study; values are missing if either overturned or failed.
+            Differences over ``restitution`` and the dimensions of the study. Values are missing if one of the two
+            histories overturned or failed.
         """
         xarray = extra("xarray", "a map of differences")
         base, others = self.datasets[self.baseline], self.labels[1:]
@@ -163,7 +166,7 @@ class Sensitivity:
         state : str
             Name of the state.
         baseline : str, optional
-            The reference choice; default: the baseline of the comparison.
+            The reference choice. Default: the baseline of the comparison.
 
         Returns
         -------
@@ -189,7 +192,7 @@ class Sensitivity:
 
     @property
     def states(self) -> tuple[str, ...]:
-        """Names of the states with a fragility curve; empty unless the study is by stripes."""
+        """Names of the states with a fragility curve; empty unless the analysis uses stripes."""
         results = self.results.values()
         if any(getattr(result, "kind", None) != MultipleStripeAnalysis.kind for result in results):
             return ()
@@ -201,7 +204,7 @@ class Sensitivity:
         for label, state in product(changes, self.states):
             try:
                 changes[label][state] = self.curve_change(label, state)
-            except InvalidValueError as error:  # data without a curve are a result, not an error of the user
+            except InvalidValueError as error:  # missing curves are a result, not an error of the user
                 changes[label][state] = str(error)
         return changes
 
@@ -211,8 +214,8 @@ class Sensitivity:
         Returns
         -------
         list of dict
-            The choice, the overturning fraction, different verdicts from the baseline with the 95 % interval of their
-            fraction, and for every state the difference of its curve.
+            Choice, overturning fraction, verdicts that differ from the baseline with the 95 % interval of their
+            fraction, and differences of the curves of the states.
         """
         rows = []
         for label in self.labels:
@@ -237,7 +240,7 @@ class Sensitivity:
         Parameters
         ----------
         unit : tuple of str and float, optional
-            Name and size [unit of the intensity measure]; default: the unit of the measure.
+            Name of the unit, and its size [unit of the intensity measure]. Default: the unit of the measure.
 
         Returns
         -------
@@ -287,7 +290,7 @@ def _or_none(value: float) -> float | None:
 
 
 def _curve(fit: Any) -> tuple[float, float]:
-    """Return median and dispersion, or raise the verdict of the fit as error."""
+    """Return median and dispersion. If there is no curve, raise an error with the verdict of the fit."""
     if fit.median is None or fit.dispersion is None:
         raise InvalidValueError("no curve to compare: {reason}", reason=fit.verdict.rstrip("."))
     return float(fit.median), float(fit.dispersion)
@@ -314,12 +317,12 @@ def sensitivity(
     Parameters
     ----------
     study : callable
-        Function with ``restitution=`` that returns a dataset or an analysis with an outcome, such as a
+        Function with a parameter ``restitution`` that returns a dataset or an analysis with an outcome, such as a
         ``functools.partial`` of `overturning_map` or `simulate_many`.
     restitutions : list of choices, or dict of them by name
         At least two models, coefficients [-], pairs by side, or impact laws.
     baseline : str, optional
-        Name of the reference choice; default: the first.
+        Name of the reference choice. Default: the first choice.
     repetitions : int
         Number of resampled sets of motions for the intervals of fragility curves.
     seed : int
@@ -333,7 +336,7 @@ def sensitivity(
     Raises
     ------
     InvalidValueError
-        If a choice is no restitution, or the results have different shapes.
+        If a choice is not a restitution, or if the results have different shapes.
 
     Examples
     --------
@@ -367,7 +370,7 @@ def map_sensitivity(
     Parameters
     ----------
     body, motion, x, y
-        As for `rocking.overturning_map`; neither axis is the restitution.
+        As for `rocking.overturning_map`. The restitution must not be an axis.
     restitutions, baseline
         As for `sensitivity`.
     **options
@@ -376,12 +379,12 @@ def map_sensitivity(
     Returns
     -------
     Sensitivity
-        Different verdicts and values, cell by cell.
+        Different verdicts and values, for every cell.
 
     Raises
     ------
     InvalidValueError
-        If an axis is the restitution, a choice is none, or a value is outside its range.
+        If an axis is the restitution, if a choice is not a restitution, or if a value is outside its range.
 
     Examples
     --------
@@ -450,15 +453,14 @@ def fragility_sensitivity(
     body, motions, levels
         As for `rocking.fragility`.
     restitutions, baseline, repetitions, seed
-        As for `sensitivity`; 0 repetitions: no intervals.
+        As for `sensitivity`. 0 repetitions mean no intervals.
     **options
         ``im``, ``limit_states`` and the other options of `rocking.studies.fragility_analysis`.
 
     Returns
     -------
     Sensitivity
-        Different verdicts, and for every state the ratio of medians, difference of dispersions and distance of the
-        curves.
+        Different verdicts, and for every state ratio of medians, difference of dispersions and distance of the curves.
     """
     from rocking.studies.histories import results_of
 
@@ -475,6 +477,6 @@ def fragility_sensitivity(
 
 
 def _reusable(motions: Any) -> Any:
-    """Return motions for repeated iteration: a generator would be empty after the first choice."""
+    """Return motions for repeated iteration, because a generator would be empty after the first choice."""
     is_reusable = isinstance(motions, (GroundMotion, Pulse, MotionSet)) or not isinstance(motions, Iterable)
     return motions if is_reusable else list(motions)

@@ -1,4 +1,4 @@
-"""Restitutions of a sensitivity study, by unique names."""
+"""Restitutions of a sensitivity study, with unique names."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ from rocking.studies.histories import Histories, described_law
 
 
 def named_restitutions(restitutions: Any) -> dict[str, Any]:
-    """Return restitutions by name: models, coefficients [-], pairs by side, laws; names are made for a sequence."""
+    """Return restitutions by name: models, coefficients [-], pairs by side, laws. A sequence gets names."""
     if isinstance(restitutions, Mapping):
         pairs = [(str(name), choice) for name, choice in restitutions.items()]
         if set(restitutions) == set(FEET):
@@ -41,7 +41,7 @@ def named_restitutions(restitutions: Any) -> dict[str, Any]:
 
 
 def label_of(choice: Any) -> str:
-    """Return the name of a choice of restitution; None is for friction."""
+    """Return the name of a choice of restitution. None is allowed with friction."""
     if choice is None:
         return COMPLEMENTARITY
     if isinstance(choice, (str, RestitutionModel)):
@@ -79,11 +79,11 @@ _FIRST, _SECOND = np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB)
 
 
 class SampledRestitution(DrawnRestitution):
-    """A coefficient sampled once per history, common to all its impacts: r is uncertain, not random.
+    """A coefficient that is sampled once per history and used for all its impacts. r is uncertain, not random.
 
-    The sample depends on the seed and on the index of the history only. Many histories are sampled before they run, on
-    either engine; a single response uses the reference engine. For a sample per impact use `RandomRestitution`. Samples
-    above the energy bound of a side are limited, and both sides use one random number: see
+    The sample depends only on the seed and on the index of the history. Many histories are sampled before the
+    computation, and can use both engines. A single response uses the reference engine. For a sample per impact, use
+    `RandomRestitution`. Samples above the energy bound of a side are limited, and both sides use one random number, see
     `rocking.dynamics.impact_laws.DrawnRestitution`.
 
     Parameters
@@ -94,8 +94,8 @@ class SampledRestitution(DrawnRestitution):
     Raises
     ------
     InvalidValueError
-        If the quantiles decrease or are outside [0, 1], or by side [0, 10], or the seed is not a whole number from 0 to
-        2^64 - 1.
+        If the quantiles decrease or are outside [0, 1] (by side: outside [0, 10]), or if the seed is not a whole number
+        from 0 to 2^64 - 1.
 
     Examples
     --------
@@ -108,7 +108,7 @@ class SampledRestitution(DrawnRestitution):
 
     @classmethod
     def of_law(cls, law: RandomRestitution) -> "SampledRestitution":
-        """Return the distribution of a law, sampled per history instead of per impact.
+        """Return a law with the same distribution that is sampled per history instead of per impact.
 
         Parameters
         ----------
@@ -118,7 +118,7 @@ class SampledRestitution(DrawnRestitution):
         Returns
         -------
         SampledRestitution
-            Law with the quantiles, the seed and the base of that law.
+            Law with quantiles, seed and base of `law`.
 
         Raises
         ------
@@ -129,11 +129,11 @@ class SampledRestitution(DrawnRestitution):
         return cls(law.factors, law.seed, law.times, law.cut)
 
     def content(self) -> dict[str, Any]:
-        """Return the seed and the hashes of the tables; the fields of a user's dataclass."""
+        """Return the seed and the hashes of the tables, or the fields of a user-defined dataclass."""
         return self._tables() if type(self) is SampledRestitution else super().content()
 
     def draws(self, numbers: Any, foot: Foot | None = None, share: Any = 1.0) -> FloatArray:
-        """Return the samples of many histories, bit-identical to `draw`.
+        """Return the samples of many histories. They are bit-identical to `draw`.
 
         Parameters
         ----------
@@ -152,17 +152,17 @@ class SampledRestitution(DrawnRestitution):
         u, table = share * uniforms(self.seed, numbers), self.table(foot)  # Eq. 41
         above = np.clip(
             np.searchsorted(self.at, u, side="right"), 1, self.at.size - 1
-        )  # the share of an impossible body is NaN
+        )  # the fraction `share` of an impossible body is NaN
         low, high = table[above - 1], table[above]
         return np.asarray(low + (high - low) * ((u - self.at[above - 1]) / (self.at[above] - self.at[above - 1])))
 
 
 @dataclass(frozen=True, eq=False)
 class SampledHistories(Histories):
-    """Histories with coefficients multiplied by a sample per history, from its index."""
+    """Histories whose coefficients are multiplied by one sample per history, from the index of the history."""
 
-    base: Histories  # the histories; with r = 1 on both sides the sample is the coefficient
-    draw: SampledRestitution  # the distribution of factors on the rows of the base
+    base: Histories  # the histories; if r = 1 on both sides, the sample is the coefficient
+    draw: SampledRestitution  # distribution of the factors on the rows of the base
 
     @classmethod
     def of(cls, base: Histories, draw: SampledRestitution) -> "SampledHistories":
@@ -199,12 +199,12 @@ class SampledHistories(Histories):
 
 
 def sampled(histories: Histories) -> Histories:
-    """Return histories for the fast engine; a law with a sample per history is applied to their rows."""
+    """Return histories for the fast engine. A law with one sample per history is applied to the rows."""
     return SampledHistories.of(histories, histories.law) if isinstance(histories.law, SampledRestitution) else histories
 
 
 def uniforms(seed: int, numbers: Any, impact: int = 0) -> FloatArray:
-    """Return numbers in [0, 1) by seed, history and impact, bit-identical to `impact_laws.uniform`."""
+    """Return numbers in [0, 1) by seed, history and impact. They are bit-identical to `impact_laws.uniform`."""
     keys = np.atleast_1d(np.asarray(numbers))
     if keys.dtype.kind not in "iu":
         raise InvalidValueError(
@@ -217,7 +217,7 @@ def uniforms(seed: int, numbers: Any, impact: int = 0) -> FloatArray:
 
 
 def _mixed(z: Any) -> Any:
-    """Return Splitmix64 of 64-bit words, with intended overflow."""
+    """Return Splitmix64 of 64-bit words. The overflow is intended."""
     z = z + _GOLDEN
     z = (z ^ (z >> np.uint64(30))) * _FIRST
     z = (z ^ (z >> np.uint64(27))) * _SECOND
