@@ -27,8 +27,8 @@ for line in found.assumed:
 
 # %%
 # The motion has the largest first-order contribution: the motions differ more than the sampled cabinets. The inputs of
-# the cabinet act together, and none of them decides alone. Under some motions a difference of one part in a million
-# changes the outcome. These responses are unpredictable, but their probability is predictable.
+# the cabinet act together, and none of them decides alone. A difference of one part in a million in the scale of the
+# motions changes 0 of 66 outcomes.
 
 shares = {name: share.first for name, share in found.contributions.items()}
 assert max(shares, key=shares.get) == "case"
