@@ -166,7 +166,7 @@ class Identity:
                     hint="finish it where it was begun, or create a new campaign",
                 ).at(str(folder))  # fmt: skip
             raise CampaignMismatchError(
-                "begun with {software} {expected}, this is {version}, whose results may differ in their last bits",
+                "begun with {software} {expected}. Results of {version}, installed here, may differ in the last bits",
                 software=kind, expected=before, version=here,
                 hint=f"finish it with {before}, or create a new campaign",
             ).at(str(folder))  # fmt: skip

@@ -200,7 +200,7 @@ def check_progress(progress: object) -> None:
     """Raise an error if `progress` is not a function."""
     if progress is not None and not callable(progress):
         raise InvalidValueError(
-            parameter="progress", allowed="a function of the histories done, or None", value=progress
+            parameter="progress", allowed="a function of the number of computed histories, or None", value=progress
         )
 
 

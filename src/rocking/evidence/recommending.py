@@ -128,13 +128,13 @@ def _chosen(models: Sequence[Any]) -> list[RestitutionModel]:
     by_label = {candidate.label: candidate for candidate in map(model, _several(models))}
     if not isinstance(by_label.get(CALIBRATED, Calibrated()), Calibrated):
         raise InvalidValueError(
-            "{name!r} is the name of the default, which is always compared", name=CALIBRATED, hint="rename your model"
+            "the name {name!r} is reserved for the default model", name=CALIBRATED, hint="rename your model"
         )
     for candidate in by_label.values():
         if isinstance(candidate.model if isinstance(candidate, Interface) else candidate, Fixed):
             raise InvalidValueError(
                 "{label} is a fixed value and cannot be compared with measurements of other bodies",
-                label=candidate.label, hint="a value measured on this body is better than all models",
+                label=candidate.label, hint="use a value measured on this body without a comparison",
             )  # fmt: skip
     return list(by_label.values())
 

@@ -85,8 +85,8 @@ def test_warnings_of_friction() -> None:
     low = contact.warnings(0.1)
     assert len(low) == 2
     assert f"rocking without slip needs a coefficient of friction of {contact.friction_of_motion:.2f}" in low[0]
-    assert "with 0.1 the body slides" in low[0]
-    assert "impacts without slip need a coefficient of friction of 1.00; with 0.1 the foot slips" in low[1]
+    assert "With 0.1 the body slides" in low[0]
+    assert "impacts without slip need a coefficient of friction of 1.00. With 0.1 the foot slips" in low[1]
     assert contact.warnings(1.0) == []
     assert len(contact.warnings()) == 1
     assert not contact.loses_contact

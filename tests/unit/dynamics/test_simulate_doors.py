@@ -235,7 +235,7 @@ def test_progress(progress: Any) -> None:
     """Progress is told to a function; anything else is refused before anything is computed."""
     row = {"alpha_right": 0.2, "alpha_left": 0.2, "p_right": 2.0, "p_left": 2.0, "r_right": 0.9, "r_left": 0.9}
     batch = Batch([Segments.still(0.1, 3)], engine="reference")
-    with pytest.raises(InvalidValueError, match="progress must be a function of the histories done, or None, got"):
+    with pytest.raises(InvalidValueError, match="progress must be a function of the number of computed histories"):
         batch.run(1, lambda first, last: Rows.of(last - first, **row), progress)
     pytest.importorskip("xarray")
     with pytest.raises(InvalidValueError, match="progress must be a function"):

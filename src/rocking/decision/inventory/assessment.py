@@ -137,7 +137,7 @@ class Assessment:
         return {light: sum(verdict.light is light for verdict in self.verdicts) for light in reversed(Light)}
 
 
-_ROLLS = Message("its friction was ignored: a round object rocks in a plane")
+_ROLLS = Message("the friction coefficient is ignored: a round object rocks in a plane without sliding")
 
 DEFAULT_MODELS = (DEFAULT_RESTITUTION, *reversed(COMPARED_RESTITUTIONS))
 """Default restitution models of an inventory; the first model gives the rating."""

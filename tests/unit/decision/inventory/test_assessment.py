@@ -325,7 +325,7 @@ def test_a_round_object_with_friction_rocks_in_a_plane(quakes):
     assert by_name["drum"].results == alone.results
     assert by_name["drum"].friction == math.inf
     assert tuple(map(str, by_name["drum"].item.remarks)) == (
-        "its friction was ignored: a round object rocks in a plane",
+        "the friction coefficient is ignored: a round object rocks in a plane without sliding",
     )
     assert (by_name["column"].friction, by_name["column"].item.remarks, alone.item.remarks) == (0.5, (), ())
 

@@ -86,7 +86,10 @@ def test_every_file_contains_the_curves_that_are_shown(leaning, tmp_path):
     ]
     rows = fema_p58_table(made).rows
     assert [row[4] * G for row in rows] == pytest.approx([c.median for c in shown.curves], rel=1e-14)
-    assert all(made.adjusted in row[9] and "no motion lifts the body below 0.311 g" in row[9] for row in rows)
+    for row in rows:
+        assert made.adjusted.rstrip(".") in row[9]
+        assert "no motion lifts the body below 0.311 g" in row[9]
+        assert ".;" not in row[9]
     assert made.adjusted in to_nrml(made, tmp_path / "f.xml").read_text("utf-8").replace("&gt;", ">")
     figure = fragility_picture(leaning, curves=shown)
     drawn = [line.get_xydata() for line in figure.axes[0].lines if len(line.get_xdata()) == 120]

@@ -113,8 +113,9 @@ def _inner_parts(
     difference = (solid - hollow) / solid
     if difference > MOST_VOLUME:
         raise GeometryError(
-            "{shells}: solid or cavity is ambiguous; {volumes}, a difference of {share}", shells=description,
-            volumes=differ, share=percent(difference), hint=Message("use {solid} or {cavity}", _READINGS),
+            "{shells}: solid parts and cavities cannot be distinguished: {volumes}, a difference of {share}",
+            shells=description, volumes=differ, share=percent(difference),
+            hint=Message("use {solid} or {cavity}", _READINGS),
         )  # fmt: skip
     location = np.average(middles, axis=0, weights=sizes)
     log.add_repair(f'{description}: solid assumed; inner_parts="cavity" selects cavities', solid - hollow, location)

@@ -54,6 +54,6 @@ export const BodyFile = ({ app }) => {
       <p class="field-help" data-testid="held-file">${name.value && t("File: {name}. After a change of the unit the file is read again.", { name: name.value })}</p>
       <div class="refusal" role="alert" data-testid="file-refusal">${wrong.value && !ofUnit && html`<${Note} kind="error" text=${wrong.value} />`}</div>
       <${Choice} label="Unit of the file" value=${units.value} on=${inUnit} options=${UNITS} error=${ofUnit && wrong.value}
-        help="WKT and GeoJSON contain no unit, TOML always, DXF sometimes." />
+        help="TOML files contain a unit, DXF files sometimes. WKT and GeoJSON files contain no unit." />
     </div>`;
 };

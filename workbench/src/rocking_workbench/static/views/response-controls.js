@@ -8,7 +8,7 @@ import { readRestitution, writeRestitution } from "/views/response-restitution.j
 import { canBeScaled, scaledBody } from "/views/response-size.js";
 
 const [LEAN, USUAL] = [0.5, 0.9];
-const CALIBRATED = "The calibrated model is fitted to published measurements. Impact shows its interval.";
+const CALIBRATED = "The calibrated model is fitted to published measurements. The page Impact shows its interval.";
 
 /** Start from an initial rotation, without ground motion. @param {App} app */
 export const lean = (app) => {
