@@ -7,7 +7,8 @@ import pytest
 from PIL import Image
 
 import rocking as rk
-from rocking.dynamics.rolling import SpatialResponse
+from rocking.dynamics.rolling import SpatialResponse, response
+from rocking.dynamics.rolling.body import SpatialBody
 from rocking.outcome import Status
 
 pytestmark = pytest.mark.slow
@@ -180,7 +181,22 @@ def test_capitals_of_a_model_do_not_matter(run, answered, body):
     assert run(*words, "KED-3E")[0] == 2
 
 
-def test_a_round_base_is_followed_to_rest_or_its_end_has_a_reason(printed, answered, tmp_path):
+@pytest.fixture
+def followed_once(monkeypatch):
+    """Follow a history once for all doors that ask for the same motions, law, settings and duration."""
+    follow, histories = response.response_in_space, {}
+
+    def kept(body, motions, restitution, settings, **options):
+        key = repr((SpatialBody.of(body).inertia, motions, restitution, settings, options))
+        if key not in histories:
+            histories[key] = follow(body, motions, restitution, settings, **options)
+        return histories[key]
+
+    monkeypatch.setattr(response, "response_in_space", kept)
+    return histories
+
+
+def test_a_round_base_is_followed_to_rest_or_its_end_has_a_reason(printed, answered, tmp_path, followed_once):
     """A cylinder under one sine comes to rest after it; under two it rolls on without impact, which screen, --json and
     Python state; with a duration that is no reason."""
     file, reason = tmp_path / "drum.toml", "no impact lost energy in the 15 / p after the motion"
@@ -201,6 +217,7 @@ def test_a_round_base_is_followed_to_rest_or_its_end_has_a_reason(printed, answe
         assert "use duration= in Python for a longer response" in text
     rolling = rk.simulate(solid, {"x": rk.pulses.sine(2.6, 0.8), "y": rk.pulses.sine(2.5, 0.5)}, "housner")
     assert (rolling.exported().provenance["ends_early"], rolling.impacts.size) == (True, 0)
+    assert len(followed_once) == 2, "Python, page and --json ask for the same history"
     # negative control: a stated duration ends another history without that reason
     stated = rk.simulate(solid, {"x": pulse}, "housner", duration=3.0)
     assert (stated.still_rocking, stated.ends_early) == (True, False)
