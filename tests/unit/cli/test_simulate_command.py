@@ -177,8 +177,8 @@ def test_warnings_are_in_plain_words(run, answered):
     slip = ("--set", "response.assumed_friction=0.2")
     slippery = answered(*words, *slip)
     assert slippery["friction"] == 0.2
-    assert "with 0.2 the body slides" in slippery["warnings"][0]
-    assert "with 0.2 the body slides" in run(*words, *slip)[1]
+    assert "With 0.2 the body slides" in slippery["warnings"][0]
+    assert "With 0.2 the body slides" in run(*words, *slip)[1]
     hard = ("--width", 3, "--height", 1, "sine:amplitude=40,period=1", "--restitution", "0.5")
     flying = answered(*hard)
     assert flying["friction_of_motion"] is None
