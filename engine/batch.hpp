@@ -18,24 +18,25 @@ struct Range {
 
 // One ground motion within the common array of coefficients.
 struct Shake {
-    std::int64_t first;     // index of its first number
-    std::int64_t segments;  // number of stretches
-    std::int64_t still;     // stretches of rest after them; the jump to zero is a pair of samples at one instant
+    std::int64_t first;     // index of the first coefficient of the motion
+    std::int64_t segments;  // number of stretches (intervals between samples)
+    // number of stretches of rest after the motion; two samples at one instant are the jump to zero
+    std::int64_t still;
     double step;            // duration of a stretch [s]
-    std::int64_t block;     // index of its first block in the ranges
-    Range horizontal, vertical;  // of its accelerations, zero included [m/s2]
+    std::int64_t block;     // index of the first block of the motion in the ranges
+    Range horizontal, vertical;  // ranges of the accelerations; they include zero [m/s2]
 };
 
-constexpr int kBlock = 32;  // stretches whose accelerations have a range of their own
+constexpr int kBlock = 32;  // number of stretches in a block; every block has one range of accelerations
 
 // Smallest and largest accelerations of one direction [m/s2].
 struct Ranges {
-    std::vector<Range> within;  // each block
-    std::vector<Range> later;   // from each block to the end, zero included
+    std::vector<Range> within;  // range within every block
+    std::vector<Range> later;   // range from every block to the end; includes zero
 };
 
-// The motions of a batch. Degree 1: samples one after another, pairs (horizontal, vertical) where there is a vertical
-// part. Degree 7: coefficients of the stretches one after another.
+// The motions of a batch. Degree 1: a list of samples, or of pairs (horizontal, vertical) if there is a vertical part.
+// Degree 7: a list of the coefficients of all stretches.
 struct Motions {
     const double* data;
     int degree;
@@ -50,7 +51,8 @@ struct Motions {
 enum class LawKind : int { constant = 0, of_speed = 1, random = 2 };
 struct Law {
     LawKind kind = LawKind::constant;
-    std::vector<double> at, value[2];  // of landing on the right, on the left
+    // abscissae; values of the tables for landing on the right foot and on the left foot
+    std::vector<double> at, value[2];
     std::uint64_t seed = 0;
     double largest[2] = {1.0, 1.0};
 };
@@ -71,7 +73,8 @@ struct Trace {
 struct Rows {
     std::int64_t count;
     const double *alpha_right, *alpha_left, *p_right, *p_left, *r_right, *r_left, *q_right, *q_left;
-    const double* share[2];  // fraction of the probability of a random law that a side samples: larger values create energy
+    // per side: fraction of the probability of a random law that is sampled; larger values create energy
+    const double* share[2];
     const double *scale, *rotation, *velocity;
     const std::int64_t *motion, *key;
     // results
@@ -83,15 +86,15 @@ struct Rows {
 
 struct Settings {
     double gravity;
-    double longest_step;  // p * step of a Taylor expansion [-]
-    double rest;          // speed over p alpha below which impacts may be summed up to rest [-]
+    double longest_step;  // largest p * step of a Taylor expansion [-]
+    double rest;          // speed / (p alpha) below which a series of impacts may be replaced by rest [-]
     std::int64_t most_impacts;
     bool linear;
     int order;
     bool to_the_ground;   // continue an overturning body until it lies on the ground
 };
 
-// Largest acceleration of a motion over gravity, resultant of both directions.
+// Largest resultant acceleration of a motion, from both directions, over gravity.
 inline double strength_of(const Shake& shake, double over_gravity) {
     const double push = std::max(shake.horizontal.high, -shake.horizontal.low);
     const double lift = std::max(shake.vertical.high, -shake.vertical.low);
@@ -104,12 +107,12 @@ inline double parts_of(const Shake& shake, double p, double over_gravity, double
     return std::max(1.0, std::ceil(reach / longest_step));  // Eq. 53
 }
 
-// Reach, p times a step under 1 g, up to which the truncation error of order 6, reach^7 / 7! of p alpha, is below a hundredth
-// of that of order 8 at its longest step: equally accurate, and faster.
+// Largest reach (p times a step under 1 g) for order 6: its truncation error, reach^7 / 7! of p alpha, is then below
+// 1/100 of the error of order 8 at its longest step. Order 6 is faster.
 inline double reach_of_order_six(double longest_step) { return std::pow(std::pow(longest_step, 9) / 7200.0, 1.0 / 7.0); }  // Eq. 54
 
-// True if all steps of a row are so short that order 6 is sufficient. Under b g the error of a rotation is about
-// reach^5 b^3 / 70 of alpha in a step.
+// True if all steps of a row are short enough for order 6. Under b g the error of the rotation in a step is about
+// reach^5 b^3 / 70 of alpha.
 inline bool takes_order_six(const Motions& m, const Rows& rows, std::int64_t row, const Settings& set, double reach) {
     if (set.order != 8 || m.degree != 1 || set.linear) return false;
     if (rows.motion[row] < 0 || rows.motion[row] >= static_cast<std::int64_t>(m.shakes.size())) return false;
@@ -118,7 +121,7 @@ inline bool takes_order_six(const Motions& m, const Rows& rows, std::int64_t row
     return p * shake.step * std::pow(std::max(1.0, strength_of(shake, rows.scale[row] / set.gravity)), 0.6) < reach;
 }
 
-// Waiting rows. Threads take several at a time, and fewer towards the end, so that all threads end together.
+// Queue of rows. A thread takes several rows at a time, and fewer rows near the end. Thus all threads end together.
 struct Queue {
     std::int64_t end, chunk, threads;
     std::atomic<std::int64_t> next{0};
@@ -139,8 +142,8 @@ struct Queue {
 struct Work {
     std::int64_t steps = 0;  // Taylor steps of active lanes
     std::int64_t sweeps = 0; // steps of all lanes
-    std::int64_t events = 0; // of single lanes
-    std::int64_t orders = 0; // steps times their order
+    std::int64_t events = 0; // events of single lanes
+    std::int64_t orders = 0; // sum of the orders of all steps
 };
 
 }  // namespace rocking

@@ -1,11 +1,11 @@
-// Events of single lanes: impacts, peaks, ends of motions, and all other exceptions from plain steps.
+// Events of single lanes: impacts, peaks, ends of motions, and all other exceptions from regular steps.
 #pragma once
 #include "kernel.hpp"
 
 namespace rocking {
 namespace ROCKING_ISA {
 
-// Lanes that may touch the ground, in M registers.
+// Computes lanes that may touch the ground, in M registers.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::land(const int* who, int from, int count) {
     alignas(64) double zero[M * P], speed[M * P];
@@ -24,14 +24,15 @@ void Kernel<G, U, N, D, Z, L>::land(const int* who, int from, int count) {
         ROCKING_UNROLL
         for (int m = 0; m < M; ++m) {
             landings.zero[m].store(zero + m * P);
-            // a polynomial from the ground that is concave only after the division by its zero may increase at first
+            // a polynomial that starts on the ground may increase at first, even if it is concave after the division by
+            // its zero
             const Pack most = arcs[0][m] + arcs[1][m] + max(arcs[2][m], Pack(0.0));
             const Mask rises = (arcs[1][m] > Pack(0.0)) & (most > Pack::load(floors + from + m * P));
             rising |= static_cast<Bits>(rises.bits()) << (m * P);
             max(Pack(0.0), Pack(0.0) - landings.slope[m] / Pack::load(span + from + m * P)).store(speed + m * P);
         }
     }
-    // each operation for all lanes, without branches that depend on the lane
+    // every operation covers all lanes, and no branch depends on a lane
     int settling[M * P], settlings = 0;
     for (Bits left = landed & rising; left; left &= left - 1) {
         const int s = lowest(left);
@@ -49,7 +50,7 @@ void Kernel<G, U, N, D, Z, L>::land(const int* who, int from, int count) {
     }
 }
 
-// Height above the ground over the step.
+// Series of the height above the ground over the step.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::arc(int i, Step step, double* c) const {
     c[0] = alpha[i] - u[i];
@@ -81,7 +82,8 @@ void Kernel<G, U, N, D, Z, L>::resolve_event(int i, Step step, bool near) {
         zero = first_contact(c);
     }
     if (!(zero <= 1.0)) {
-        // one term above the sum of the others, or of those that follow it where it starts from rest: no turn
+        // one term is larger than the sum of the others (from rest: of the terms after it), so there is no turning
+        // point
         const bool comes_down = v_end[i] >= 0.0, none = 2.0 * std::fabs(step[0] != 0.0 ? step[0] : step[1]) > sum;
         if (!none || (step[0] < 0.0 && comes_down)) keep_peak(i, step, 1.0, alpha[i] - u_end[i], comes_down);
         return advance(i, step);
@@ -92,20 +94,21 @@ void Kernel<G, U, N, D, Z, L>::resolve_event(int i, Step step, bool near) {
     if (bounce(i, zero, std::max(0.0, -value_of<N>(slopes, zero) / length(i)))) settle(i);
 }
 
-// First return to y = 0; a step that starts there is divided by the known zero first.
+// First return to y = 0. If a step starts there, the polynomial is divided by this known zero first.
 ROCKING_KERNEL
 double Kernel<G, U, N, D, Z, L>::first_contact(double* c) const {
     if (c[0] > 0.0) return first_zero<N + 1>(c);
     if (c[0] < 0.0) return 0.0;
     if (c[1] > 0.0) return first_zero<N>(c + 1);
     if (c[1] < 0.0) return 0.0;
-    c[2] = std::max(c[2], 0.0);  // uplift: the moment just changed sign here, so rounding alone is left
+    // at uplift the moment has just changed its sign, so a negative coefficient is a rounding error
+    c[2] = std::max(c[2], 0.0);
     if (c[2] > 0.0) return first_zero<N - 1>(c + 2);
     if (c[3] > 0.0) return first_zero<N - 2>(c + 3);
     return 2.0;
 }
 
-// An impact, at a position within the step [rad per stretch]. settle() decides on further events.
+// An impact at a position within the step. settle() decides about further events. after: [rad per stretch]
 ROCKING_KERNEL
 bool Kernel<G, U, N, D, Z, L>::bounce(int i, double at, double speed) {
     Lane& lane = lanes[i];
@@ -137,7 +140,7 @@ void Kernel<G, U, N, D, Z, L>::settle(int i) {
     if (lanes[i].impacts >= set.most_impacts) return finish(i, kFailed, kTooManyEvents);
     if (over(i)) return conclude(i);
     if (!(after <= here(i).calm)) return;
-    const std::int64_t block = block_at(i);  // needed for a body near rest
+    const std::int64_t block = block_at(i);  // used for a body near rest
     ROCKING_PREFETCH(motions.horizontal.within.data() + block);
     ROCKING_PREFETCH(motions.horizontal.later.data() + block);
     if (comes_to_rest(i, after)) {
@@ -159,7 +162,7 @@ double Kernel<G, U, N, D, Z, L>::coefficient(int i, double speed) const {  // [r
     return r;
 }
 
-// Largest coefficient of landings on a side.
+// Largest coefficient of restitution of landings on a side.
 ROCKING_KERNEL
 double Kernel<G, U, N, D, Z, L>::largest(int i, int side) const {
     const double r = lanes[i].sides[side].r;
@@ -168,7 +171,7 @@ double Kernel<G, U, N, D, Z, L>::largest(int i, int side) const {
     return r * interpolated(law.at, law.value[side], rows.share[side][lanes[i].row]);
 }
 
-// Lane variables of the side of contact.
+// Sets the lane variables that depend on the side of contact.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::stand(int i) {
     const Side& s = here(i);
@@ -191,7 +194,7 @@ void Kernel<G, U, N, D, Z, L>::move(int i, double to) {
     }
 }
 
-// Whether the motion has ended; where rest of the ground follows, its jump to zero is passed.
+// True if the motion has ended; if the ground then rests, the jump to zero is skipped.
 ROCKING_KERNEL
 bool Kernel<G, U, N, D, Z, L>::over(int i) {
     Lane& lane = lanes[i];
@@ -199,7 +202,7 @@ bool Kernel<G, U, N, D, Z, L>::over(int i) {
     if (!lane.still) return true;
     force_at_end(i);
     idx[i] += stride;
-    lane.first += stride;  // the pair of samples counts as one instant
+    lane.first += stride;  // the two samples of the jump count as one instant
     last[i] = idx[i] + lane.still * stride;
     lane.still = 0;
     return false;

@@ -1,15 +1,15 @@
-// The force of the ground on a rocking body: with q = m R^2 / I_o, e = (u' / p)^2 and M = u'' / p^2, over the weight m g
+// The contact force on a rocking body, over the weight m g, with q = m R^2 / I_o, e = (u' / p)^2 and M = u'' / p^2:
 //     N = 1 + a_z / g - q (M S + e C),   s H = s a_x / g - q (M C - e S).
-// N < 0 is a tensile contact force: the body loses contact. Both are looked at where steps start, so at every
-// sample and after every uplift and impact, just before every impact, and where the motion ends, up to where a body that
-// overturns passes over its foot for good, this instant included.
+// N < 0 is a tensile contact force: the body loses contact. N and H are evaluated at the start of every step (every
+// sample, uplift and impact), just before every impact, and at the end of the motion. An overturning body is evaluated
+// until its last passage over its foot, including this instant.
 #pragma once
 #include "kernel.hpp"
 
 namespace rocking {
 namespace ROCKING_ISA {
 
-// Lanes of a group whose forces were beyond those so far where their last step started.
+// Updates the extreme forces of the lanes that exceed them at the start of their last step.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::note_forces(int base, Bits beats) {
     const double *s = reinterpret_cast<double*>(sines), *c = reinterpret_cast<double*>(cosines);
@@ -25,7 +25,7 @@ void Kernel<G, U, N, D, Z, L>::note_forces(int base, Bits beats) {
     }
 }
 
-// The same of one lane, at a speed per stretch, under a push s a_x / g and a weight 1 + a_z / g.
+// Updates the extreme forces of one lane, for a speed per stretch, a push s a_x / g and a weight 1 + a_z / g.
 ROCKING_KERNEL
 ROCKING_INLINE void Kernel<G, U, N, D, Z, L>::force_at(int i, double sine, double cosine, double speed, double push, double weight) {
     const double half = 0.5 * lever[i], square = kappa[i], spin = speed * speed;
@@ -41,13 +41,13 @@ void Kernel<G, U, N, D, Z, L>::note_force(int i, double up, double along, double
     demand[i] = up > 0.0 ? std::max(demand[i], along / up) : std::numeric_limits<double>::infinity();  // Eq. 35
 }
 
-// Just before an impact.
+// Evaluates the force just before an impact.
 ROCKING_KERNEL
 ROCKING_INLINE void Kernel<G, U, N, D, Z, L>::touch(int i, double speed, double push, double weight) {
     force_at(i, sine_of[i], cosine_of[i], speed, push, weight);
 }
 
-// Push s a_x / g and weight 1 + a_z / g at a place within the stretch.
+// Push s a_x / g and weight 1 + a_z / g at a position within the stretch.
 ROCKING_KERNEL
 ROCKING_INLINE void Kernel<G, U, N, D, Z, L>::ground_at(int i, double to, double& push, double& weight) const {
     const double* a = motions.data + idx[i];
@@ -56,7 +56,8 @@ ROCKING_INLINE void Kernel<G, U, N, D, Z, L>::ground_at(int i, double to, double
     weight = Z ? 1.0 + cz[i] * (a[1] + (a[hop + 1] - a[1]) * to) : 1.0;
 }
 
-// Where a body passes over its foot, at a place within the stretch: all that counts if it does so for good.
+// Force when the body passes over its foot. For the last passage, later forces are ignored. to: position within the
+// stretch.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::pass_over(int i, double speed, double to) {
     double push, weight;
@@ -65,7 +66,7 @@ void Kernel<G, U, N, D, Z, L>::pass_over(int i, double speed, double to) {
     forces_up_to_here(i);
 }
 
-// The last sample, where no step starts.
+// Evaluates the force at the last sample, where no step starts.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::force_at_end(int i) {
     const Lane& lane = lanes[i];

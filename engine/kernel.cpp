@@ -1,16 +1,17 @@
-// One set of kernels for one instruction set; compiled once for each, with ROCKING_ISA naming it.
+// One set of kernels, compiled once for each instruction set; ROCKING_ISA is the name of the set.
 #include "kernel.hpp"
 #include "table.hpp"
 
 namespace rocking {
 namespace ROCKING_ISA {
 
-// Registers of a group, whose flags fill one word where a register holds eight numbers, and groups: enough lanes for
-// those that land to fill registers of their own, few enough for the caches. A single history takes one.
+// kMany registers per group: with eight numbers per register, the flags of a group fill one word. kGroups groups: the
+// landing lanes fill complete registers, and all lanes fit into the caches. A single history uses one register in one
+// group.
 constexpr int kMany = 8, kGroups = 3;
 
-// A history has the same bits alone and among many: where such processors are rare (plain and AVX2), one set of
-// kernels is used for both, and where a wider register has no effect on a single history, that of AVX2 is used.
+// A history has the same bits alone and among many histories. Plain and AVX2 processors are rare, so one set of kernels
+// serves both cases. If a wider register has no effect on a single history, the AVX2 kernels are used.
 template <int N, int D, bool Z, bool L>
 Run rows_of(bool single) {
 #if defined(ROCKING_X86) && !defined(ROCKING_AVX2) && !defined(ROCKING_AVX512)
@@ -25,7 +26,7 @@ Run rows_of(bool single) {
 
 Run kernel_for(bool single, const Choice& c) {
 #if defined(ROCKING_AVX512)
-    // wider registers have no effect on a single history; rare kernels are compiled once
+    // wider registers have no effect on a single history; kernels in rare use are compiled once
     if ((single && c.order == 8) || c.linear || c.degree == 7 || c.order == 4) return avx2::kernel_for(single, c);
     if (c.order == 6) return c.vertical ? rows_of<6, 1, true, false>(false) : rows_of<6, 1, false, false>(false);
     return c.vertical ? rows_of<8, 1, true, false>(single) : rows_of<8, 1, false, false>(single);
@@ -36,7 +37,7 @@ Run kernel_for(bool single, const Choice& c) {
         return c.linear ? rows_of<8, 1, false, true>(single) : rows_of<8, 1, false, false>(single);
     }
     if (c.linear) return nullptr;
-    // many histories use order 6 where it applies; a single history on request only, and order 4 likewise
+    // batches use order 6 where it is sufficient; a single history uses order 6 or 4 only on request
     if (c.order == 6) {
         if (c.degree == 7) return rows_of<6, 7, false, false>(false);
         return c.vertical ? rows_of<6, 1, true, false>(false) : rows_of<6, 1, false, false>(false);

@@ -1,10 +1,10 @@
-// The fast engine: Taylor steps of many histories side by side, each lane at its own sample of its own motion.
+// The fast engine: Taylor steps of many histories in parallel. Every lane has its own motion and its own sample.
 //
-// A lane holds u = alpha - |theta| and its derivative, on the side of contact:
+// A lane contains u = alpha - |theta| and its derivative, for the side of contact:
 //     u'' = p^2 { (1 + a_z / g) S + s (a_x / g) C },   S = sin u, C = cos u   (slender-linear: S = u, C = 1),
-// with s = +1 on the right foot. S and C are carried as series: S' = C u', C' = -S u'. One expansion covers one stretch
-// of the motion or a part of it; whatever is not a plain step (impact, uplift, rest, the top, the end) is left to the
-// lane-by-lane part, so that the part that counts has no branches.
+// with s = +1 on the right foot. S and C are series too: S' = C u', C' = -S u'. One expansion covers one stretch
+// of the motion or a part of it. Other events (impact, uplift, rest, point of no return, end) are computed lane by
+// lane, so that the loop over the steps has no branches.
 #pragma once
 #include <algorithm>
 #include <limits>
@@ -19,12 +19,13 @@
 namespace rocking {
 namespace ROCKING_ISA {
 
-constexpr double kWhole = 1.0 - 1e-13;  // a step that ends this close to the end of its stretch ends with it
-constexpr double kMostError = 0.01;     // sum of error estimates above which there is no result [rad]
-constexpr double kMostSteps = 2e7;      // steps of a history
-constexpr double kLongest = 40.0;       // largest number of stretches in flights to rest
-constexpr double kHeights = 0.1;        // bound on the contribution of the heights of these flights to the logarithm of their gain
-constexpr double kNothing = 1e-9;       // speeds over p alpha that count as zero
+constexpr double kWhole = 1.0 - 1e-13;  // fraction of a stretch; a step that ends after it ends with the stretch
+constexpr double kMostError = 0.01;     // above this sum of error estimates there is no result [rad]
+constexpr double kMostSteps = 2e7;      // largest number of steps of a history
+constexpr double kLongest = 40.0;       // largest number of stretches of the flights before rest
+// bound on the effect of the heights of these flights on the logarithm of their gain
+constexpr double kHeights = 0.1;
+constexpr double kNothing = 1e-9;       // speeds / (p alpha) that count as zero
 constexpr double kHalfPi = 1.57079632679489661923;
 
 #define ROCKING_KERNEL template <int G, int U, int N, int D, bool Z, bool L>
@@ -34,28 +35,29 @@ constexpr double kHalfPi = 1.57079632679489661923;
 ROCKING_KERNEL
 class Kernel {
     static constexpr int P = Pack::width, W = G * U * P;
-    static constexpr int stride = D == 1 ? (Z ? 2 : 1) : D + 1;  // numbers of a sample or stretch
-    static constexpr int Q = U > 1 ? 2 : 1;  // registers that step side by side
-    static constexpr int M = G > 1 ? 2 : 1;  // registers of lanes that land, or turn round, side by side
-    using Bits = std::uint64_t;              // one per lane of a group
+    static constexpr int stride = D == 1 ? (Z ? 2 : 1) : D + 1;  // number of values per sample or stretch
+    static constexpr int Q = U > 1 ? 2 : 1;  // registers that are computed in parallel
+    static constexpr int M = G > 1 ? 2 : 1;  // registers of lanes that land or reverse, computed in parallel
+    using Bits = std::uint64_t;              // one bit per lane of a group
 
-    // state of the lanes; unused ones stay at rest on stretch zero. `peak` is a height that the body has had: points that are
-    // not above it are ignored. It may be below the highest point by the change within a step.
+    // state of the lanes; unused lanes rest on stretch zero. `peak` is a height that the body has reached: lower points
+    // are ignored. The highest point may be larger by the change within a step.
     alignas(64) double u[W], v[W], tau[W], sub[W], kappa[W], ca[W], cz[W], alpha[W], peak[W], err[W], fastest[W], gate[W];
-    // Forces of the ground so far: the smallest normal one over m g, the largest ratio of horizontal to normal; of the foot
-    // of contact -2 m R^2 / I_o, and sine and cosine of alpha.
+    // Extreme contact forces: smallest normal force / m g, largest ratio of horizontal to normal force. For the foot of
+    // contact: -2 m R^2 / I_o, sine and cosine of alpha.
     alignas(64) double least[W], demand[W], lever[W], sine_of[W], cosine_of[W];
     alignas(64) std::int64_t idx[W], last[W];
-    alignas(64) Pack b[D + 1][U], z[2][U], sines[U], cosines[U], spans[U];  // of the steps of a group
+    alignas(64) Pack b[D + 1][U], z[2][U], sines[U], cosines[U], spans[U];  // for the steps of a group
     alignas(64) double u_end[W], v_end[W];   // end of the last step
     alignas(64) double fresh[N + 1][U * P];  // terms of the last steps of a group
     alignas(64) double queued[N + 1][W + M * P] = {};  // terms of the lanes that may touch the ground
-    alignas(64) double above[W + M * P] = {}, floors[W + M * P] = {}, span[W + M * P] = {};  // their heights, `peak`, steps
+    // heights, `peak` and step lengths of these lanes
+    alignas(64) double above[W + M * P] = {}, floors[W + M * P] = {}, span[W + M * P] = {};
 
-    struct alignas(64) Side {  // kappa, push: of a stretch; calm: speed below which it may come to rest
+    struct alignas(64) Side {  // kappa, push: per stretch; calm: at lower speeds the body may come to rest
         double alpha, p, sine, cosine, r, kappa, push, calm;
     };
-    struct Step {  // terms of the velocity: a column of a table
+    struct Step {  // terms of the velocity, as a column of a table
         const double* terms;
         int pitch;
         double operator[](int k) const { return terms[k * pitch]; }
@@ -64,12 +66,12 @@ class Kernel {
         Side sides[2];
         std::int64_t row = -1, impacts = 0, uplifts = 0, still = 0, first, block;
         int side = 0;
-        double q[2];  // m R^2 / I_o of the sides
-        double ax, az, step, peak_signed, peak_time, over_time, first_uplift;  // the highest point found so far
+        double q[2];  // m R^2 / I_o of both sides
+        double ax, az, step, peak_signed, peak_time, over_time, first_uplift;  // peak: the largest rotation until now
     } lanes[W];
     double least_before[W], demand_before[W];  // values at the passage of a body over its foot
-    // Steps within which a lane may have its highest point: their terms, the heights from which they start, whose they are,
-    // the places up to which they count, and the heights there if the body has turned round by then, or -1.
+    // Steps that may contain the highest point of a lane: their terms, initial heights, lanes, the positions up to
+    // which the steps are valid, and the heights there if the body has reversed by then, otherwise -1.
     alignas(64) double waiting[N + 1][M * P] = {}, bases[M * P] = {};
     struct Top {
         int lane, side;
@@ -77,12 +79,12 @@ class Kernel {
         double stretch, tau, length, upto, end;
     } peaks[M * P];
     int peaks_waiting = 0;
-    struct {  // the next row, prepared so that no lane waits for memory
+    struct {  // the next row, prepared in advance, so that no lane waits for memory
         Lane lane;
         bool still;                // true if it starts at rest
         double parts;
-        std::int64_t segments;     // stretches of its motion
-        std::int64_t from;         // first sample that may lift it from rest
+        std::int64_t segments;     // number of stretches of its motion
+        std::int64_t from;         // first sample that may cause uplift from rest
         std::int64_t row = -1;
     } ready;
 
@@ -92,8 +94,8 @@ class Kernel {
     const Settings& set;
     Trace* trace;
     Queue& queue;
-    std::int64_t next = 0, end = 0;  // rows from the queue that have not begun
-    int active = 0, used = G * U;    // lanes with a row, registers with such lanes
+    std::int64_t next = 0, end = 0;  // rows from the queue that have not started
+    int active = 0, used = G * U;    // number of lanes with a row, number of registers with such lanes
 
   public:
     Work work;
@@ -145,7 +147,8 @@ class Kernel {
 
     // ---- one lane ---------------------------------------------------------------------------------------------------
 
-    double length(int i) const { return std::min(sub[i], 1.0 - tau[i]); }  // of the next step, over a stretch
+    // length of the next step / length of a stretch
+    double length(int i) const { return std::min(sub[i], 1.0 - tau[i]); }
     double stretch_of(int i) const { return static_cast<double>((idx[i] - lanes[i].first) / stride); }
     double now(int i, double fraction) const {
         const Lane& lane = lanes[i];

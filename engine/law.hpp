@@ -1,4 +1,5 @@
-// Coefficients that change from impact to impact: tables over the speed, and random values independent of the order of work.
+// Coefficients that change from impact to impact: tables over the speed, and random values independent of the order of
+// rows.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -16,7 +17,7 @@ inline std::uint64_t mixed(std::uint64_t z) {
     return z ^ (z >> 31);
 }
 
-// Number in [0, 1) that depends on the seed, the history and the number of its impacts only.
+// Number in [0, 1) that depends only on the seed, the history and the number of the impact.
 inline double uniform(std::uint64_t seed, std::int64_t key, std::int64_t impact) {
     const std::uint64_t z =
         mixed(mixed(mixed(seed) + static_cast<std::uint64_t>(key)) + static_cast<std::uint64_t>(impact));

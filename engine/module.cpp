@@ -1,4 +1,4 @@
-// Interface to Python: arrays in, arrays out, threads over chunks of rows without the interpreter lock.
+// Interface to Python: arrays as input and output. Threads compute chunks of rows without the interpreter lock.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
@@ -52,7 +52,7 @@ static Run kernel(const std::string& isa, bool single, const Choice& choice) {
     return run;
 }
 
-// The motions of a campaign, analysed once.
+// The motions of a campaign, prepared once.
 struct Library {
     Motions motions;
     In<double> keep;
@@ -89,7 +89,7 @@ static Law law_of(int kind, In<double> at, In<double> value, std::uint64_t seed)
     law.at.assign(at.data(), at.data() + at.size());
     law.seed = seed;
     if (law.kind == LawKind::constant) return law;
-    // one table serves both sides, or that of the right is followed by that of the left
+    // one table for both sides, or two tables: left, then right
     const std::size_t size = law.at.size(), left = value.size() == 2 * size ? size : 0;
     if (size == 0 || value.size() != left + size) throw std::invalid_argument("a law needs a table");
     for (int side = 0; side < 2; ++side) {
@@ -100,7 +100,7 @@ static Law law_of(int kind, In<double> at, In<double> value, std::uint64_t seed)
     return law;
 }
 
-// A dictionary of arrays as rows; the lengths are checked here, the values in the kernel.
+// Converts a dictionary of arrays to rows. The lengths are checked here, the values in the kernel.
 static Rows rows_of(const nb::dict& in, const nb::dict& out) {
     Rows rows{};
     rows.count = -1;
@@ -171,7 +171,7 @@ static Settings settings_of(double gravity, double longest_step, double rest_spe
     return {gravity, longest_step, rest_speed, most_impacts, linear, order, ground};
 }
 
-// Rows for one kernel, in the order in which threads take them.
+// Rows for one kernel, in the order of computation.
 struct Share {
     Run run;
     std::vector<std::int64_t> list;
@@ -181,7 +181,7 @@ struct Share {
         : run(run_), list(std::move(list_)), queue{static_cast<std::int64_t>(list.size()), chunk, threads} {}
 };
 
-// The last rows that are taken are the short ones: lanes whose neighbours have ended idle for less time.
+// Short rows are last in the queue. Therefore lanes are idle for less time at the end.
 static void short_ones_last(std::vector<std::int64_t>& list, const Motions& m, const Rows& rows, int threads) {
     const auto length = [&](std::int64_t row) {
         const std::int64_t motion = rows.motion[row];
@@ -191,7 +191,7 @@ static void short_ones_last(std::vector<std::int64_t>& list, const Motions& m, c
     std::stable_sort(list.end() - tail, list.end(), [&](auto a, auto b) { return length(a) > length(b); });
 }
 
-// All chunks in turn, by all threads, without waiting between chunks.
+// Computes all chunks with all threads, without waiting between chunks.
 static void share_out(std::deque<Share>& shares, const Motions& m, const Law& law, const Rows& all, const Settings& set,
                       int threads, Work& total) {
     std::mutex one_at_a_time;
@@ -274,7 +274,8 @@ static nb::list run_single(const Library& library, const nb::dict& in, const nb:
 }  // namespace rocking
 
 NB_MODULE(_engine, m) {
-    nb::set_leak_warnings(false);  // a study that lives until Python ends keeps its motions laid out: no leak
+    // a study that exists until Python ends keeps its prepared motions; this is not a leak
+    nb::set_leak_warnings(false);
     using namespace rocking;
     m.doc() = "Taylor steps of many rocking histories side by side.";
     nb::class_<Library>(m, "Library")

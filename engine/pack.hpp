@@ -1,6 +1,6 @@
-// A few doubles that are worked on at once: one AVX-512 or AVX2 register, or four plain numbers.
-// Every operation is the same on every lane, and fused multiply-adds are written, never left to the compiler, so that
-// a history comes out in the same bits whatever lane it runs in.
+// A small number of doubles with common operations: one AVX-512 or AVX2 register, or four plain numbers.
+// Every operation is the same on every lane. Fused multiply-adds are explicit, and the compiler adds none. Therefore
+// a history has the same bits in every lane.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -41,7 +41,7 @@ namespace rocking {
 namespace ROCKING_ISA {
 
 #if defined(ROCKING_PACK)
-#include ROCKING_PACK  // numbers that also count what is done with them: see benchmarks/counted_pack.hpp
+#include ROCKING_PACK  // numbers that also count their operations: see benchmarks/counted_pack.hpp
 #elif defined(ROCKING_AVX512)
 
 struct Mask {
@@ -65,7 +65,7 @@ struct Pack {
     static Pack gather(const double* base, const std::int64_t* k) {
         return _mm512_i64gather_pd(_mm512_load_si512(k), base, 8);
     }
-    // Numbers and those next to them in memory: fewer loads than two gathers.
+    // Loads numbers and their neighbours in memory: fewer loads than two gathers.
     static void pairs(const double* base, const std::int64_t* k, Pack& first, Pack& second) {
         const auto two = [&](int i) {
             return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(base + k[i])), _mm_loadu_pd(base + k[i + 2]), 1);

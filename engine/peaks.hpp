@@ -1,12 +1,12 @@
-// Highest points: steps within which a body may turn round wait here, until they fill registers of their own.
+// Highest points: steps in which a body may reverse wait here until they fill complete registers.
 #pragma once
 #include "kernel.hpp"
 
 namespace rocking {
 namespace ROCKING_ISA {
 
-// Stores a step, up to a position in it at which the body is at `height` above the ground. A return to the ground there,
-// with the initial direction, implies a turning point.
+// Stores a step up to a position at which the body is at `height` above the ground. If the body returns to the ground
+// there and starts upwards, the step contains a turning point.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::keep_peak(int i, Step step, double upto, double height, bool comes_down) {
     const int s = peaks_waiting++;
@@ -15,13 +15,13 @@ void Kernel<G, U, N, D, Z, L>::keep_peak(int i, Step step, double upto, double h
     const bool turns = step[0] < 0.0 && comes_down;
     bases[s] = alpha[i] - u[i];
     peaks[s] = {i, lanes[i].side, lanes[i].row, stretch_of(i), tau[i], length(i), upto, turns ? height : -1.0};
-    // Not more, even if the highest point is known: otherwise the next action of a lane would depend on the time of the
-    // search, and therefore on other lanes.
+    // The step is always stored, even if the highest point is known. Otherwise the next action of a lane would depend
+    // on the time of the search, and therefore on other lanes.
     if (turns) peak[i] = std::max(peak[i], std::max(bases[s], height));
     if (peaks_waiting == M * P) find_peaks();
 }
 
-// Where the velocity changes its sign: all steps that wait, side by side.
+// Finds the zeros of the velocity in all waiting steps, in parallel.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::find_peaks() {
     alignas(64) double at[M * P], height[M * P];
@@ -40,7 +40,7 @@ void Kernel<G, U, N, D, Z, L>::find_peaks() {
     }
     for (int s = 0; s < peaks_waiting; ++s) {
         const Top& top = peaks[s];
-        if (lanes[top.lane].row != top.row) continue;  // it has ended since
+        if (lanes[top.lane].row != top.row) continue;  // this row has ended in the meantime
         if (ended >> s & 1) {
             raise_peak(top, at[s], height[s]);
         } else {
@@ -52,7 +52,7 @@ void Kernel<G, U, N, D, Z, L>::find_peaks() {
             }
             each_fall<N>(slopes, [&](double x) { raise_peak(top, x, value_of<N + 1>(c, x)); });
         }
-        raise_peak(top, top.upto, top.end);  // a body may turn round at the end to rounding
+        raise_peak(top, top.upto, top.end);  // within rounding, a body may reverse at the end
     }
     peaks_waiting = 0;
 }
@@ -74,7 +74,7 @@ void Kernel<G, U, N, D, Z, L>::raise_peak(int i, double y, double time) {
     lane.peak_time = time;
 }
 
-// Whether a step of this lane waits.
+// True if a step of this lane waits.
 ROCKING_KERNEL
 bool Kernel<G, U, N, D, Z, L>::has_peaks(int i) const {
     for (int s = 0; s < peaks_waiting; ++s)

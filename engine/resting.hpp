@@ -1,11 +1,11 @@
-// At rest: when the ground lifts the body, and when impacts that die out have brought it there.
+// A body at rest: the time at which the ground causes uplift, and the proof that decaying impacts end in rest.
 #pragma once
 #include "kernel.hpp"
 
 namespace rocking {
 namespace ROCKING_ISA {
 
-// Moment that holds the body down on a side, over m g R: D = (1 + a_z / g) sin alpha + s (a_x / g) cos alpha,
+// Restoring moment of a side, over m g R: D = (1 + a_z / g) sin alpha + s (a_x / g) cos alpha,
 // as a polynomial of the time within a stretch.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::holding(int i, int side, std::int64_t at, double* d) const {
@@ -26,7 +26,8 @@ void Kernel<G, U, N, D, Z, L>::holding(int i, int side, std::int64_t at, double*
     }
 }
 
-// First instant of the stretch, from `from` on, at which a side is no longer held down; 2 if it is throughout.
+// First instant after `from` in the stretch at which the restoring moment of a side is not positive; 2 if there is
+// none.
 ROCKING_KERNEL
 double Kernel<G, U, N, D, Z, L>::release(int i, int side, std::int64_t at, double from) const {
     double d[D + 1];
@@ -51,8 +52,8 @@ double Kernel<G, U, N, D, Z, L>::release(int i, int side, std::int64_t at, doubl
     return zero > 1.0 ? 2.0 : from + zero * (1.0 - from);
 }
 
-// Restoring moments over the next stretches: smallest moments of both sides, their total variation over the
-// smallest values, and their derivative with respect to the rotation.
+// Restoring moments over the next stretches: smallest moments of both sides, total variation of the moments over the
+// smallest values, and derivative of the moments with respect to the rotation.
 ROCKING_KERNEL
 bool Kernel<G, U, N, D, Z, L>::window(int i, std::int64_t stretches, double most_varies, Window& w) const {
     const Lane& lane = lanes[i];
@@ -107,8 +108,8 @@ bool Kernel<G, U, N, D, Z, L>::window(int i, std::int64_t stretches, double most
     return true;
 }
 
-// After an impact with a small speed: do the impacts to come add up to rest before the body could rise again? If so,
-// that is proven (docs/theory/rest.md), and nothing is lost by not resolving them one by one.
+// After an impact with a small speed: true if the next impacts provably decay to rest before the body can rise again
+// (docs/theory/rest.md). Then these impacts need not be computed.
 ROCKING_KERNEL
 bool Kernel<G, U, N, D, Z, L>::comes_to_rest(int i, double after) const {  // [rad per stretch]
     const Lane& lane = lanes[i];
@@ -124,16 +125,16 @@ bool Kernel<G, U, N, D, Z, L>::comes_to_rest(int i, double after) const {  // [r
     holding(i, -lane.side, at, d);
     const double across = value_of<D>(d, tau[i]), r = largest(i, lane.side < 0), q = largest(i, lane.side > 0), lost = 1.0 - r * q;
     const double p2 = s.p * s.p * lane.step * lane.step, other = o.p * o.p * lane.step * lane.step;
-    // the flights under the moments of now, as a guess of the time they take
+    // duration of the flights with the present moments, as an estimate
     const double flights = 2.0 * after * (other * across + q * p2 * held), rate = p2 * held * (other * across) * lost;  // Eq. 37
     if (!(across > 0.0 && flights < kLongest * rate)) return false;
     const double left = 1.0 - tau[i], guess = 1.5 * (flights / rate);
     const std::int64_t rest_of_it = (last[i] - idx[i]) / stride;
     const std::int64_t stretches = guess > left ? std::min(static_cast<std::int64_t>(guess - left) + 2, rest_of_it) : 1;
     const double end = left + static_cast<double>(stretches - 1);
-    // The result increases with x = (variation + kHeights) / 2, and all >= flights / rate (1 + x + x^2), so that
-    // (2 x + 1)^2 <= spare / flights, and x <= spare / flights / 8 since no root is above its tangent. Beyond this
-    // variation of the ground it is bound to fail, so the rest of the window need not be seen.
+    // The total duration increases with x = (variation + kHeights) / 2, and all >= flights / rate (1 + x + x^2). Hence
+    // (2 x + 1)^2 <= spare / flights, and x <= spare / flights / 8, since the root is below its tangent. With a larger
+    // variation of the ground the proof fails, so the remaining window is not examined.
     const double spare = 4.0 * (end * rate) - 3.0 * flights, least = 0.999999 * (1.0 + kHeights) * (1.0 + kHeights);
     if (!(spare > least * flights)) return false;
     const double most_varies = 1.000001 * std::min((0.25 * spare - kHeights * flights) * held * across, 2.0 * flights * held * across) /
@@ -143,14 +144,14 @@ bool Kernel<G, U, N, D, Z, L>::comes_to_rest(int i, double after) const {  // [r
     const int k = lane.side > 0 ? 0 : 1;
     const double low = w.low[k], low_ = w.low[1 - k], x = 0.5 * (w.variation + kHeights);
     if (!(x <= 1.0)) return false;
-    const double gain = 1.0 + x + x * x;  // more than exp(x)
+    const double gain = 1.0 + x + x * x;  // upper bound of exp(x)
     const double heights = w.steepness * (after * after) * (gain * gain) / std::min(p2 * low * low, other * low_ * low_);  // Eq. 40
     if (!(2.2 * heights * (1.0 + q * q) <= kHeights * (1.0 - r * r * q * q) && heights <= 0.3)) return false;
     const double all = 2.0 * after * gain * (1.0 / (p2 * low) + q / (other * low_)) / (lost * (1.0 - heights));  // Eq. 16
     return all <= end;
 }
 
-// First sample from `at` up to but not including `end` that is not calm; `end` if there is none.
+// First sample from `at` to before `end` that is not calm; `end` if all samples are calm.
 ROCKING_KERNEL
 std::int64_t Kernel<G, U, N, D, Z, L>::first_loud(std::int64_t at, std::int64_t end, double scale, double calm) const {
     for (; at + P <= end; at += P) {
@@ -161,8 +162,8 @@ std::int64_t Kernel<G, U, N, D, Z, L>::first_loud(std::int64_t at, std::int64_t 
     return at;
 }
 
-// First place from `at` on within a block in which the body may be lifted: `at` itself, the start of a later block, or a
-// place that is not before `stop`.
+// First position from `at` on in a block in which uplift is possible: `at`, the start of a later block, or a
+// position that is not before `stop`.
 ROCKING_KERNEL
 std::int64_t Kernel<G, U, N, D, Z, L>::first_block(const Lane& lane, std::int64_t at, std::int64_t stop) const {
     const std::int64_t first = lane.first, length = kBlock * stride;
@@ -173,7 +174,7 @@ std::int64_t Kernel<G, U, N, D, Z, L>::first_block(const Lane& lane, std::int64_
     return at;
 }
 
-// At rest: find where the ground next lifts the body, skipping blocks in which it cannot.
+// At rest: finds the next uplift, and skips blocks without uplift.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::rest(int i) {
     const std::int64_t now_ = block_at(i);
@@ -181,7 +182,7 @@ void Kernel<G, U, N, D, Z, L>::rest(int i) {
     await(i, ever ? idx[i] : last[i]);
 }
 
-// From a sample on, at rest up to there.
+// Continues the search for uplift from a sample; the body is at rest until there.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::await(int i, std::int64_t at) {
     const Lane& lane = lanes[i];
@@ -208,7 +209,8 @@ void Kernel<G, U, N, D, Z, L>::await(int i, std::int64_t at) {
         const double right = release(i, 1, at, from), left = release(i, -1, at, from);
         int side = right < left ? 1 : left < right ? -1 : 0;
         if (side == 0 && right <= 1.0) side = preferred(i, at, right);
-        if (Z && side == 0 && right <= 1.0) {  // no push, so it stays where it is, though the ground would have to pull
+        // without a horizontal push the body stays in place, although the contact force is tensile
+        if (Z && side == 0 && right <= 1.0) {
             least[i] = std::min({least[i], 1.0 + lane.az * motions.data[at + 1], 1.0 + lane.az * motions.data[at + stride + 1]});
             demand[i] = std::numeric_limits<double>::infinity();
         }
@@ -229,7 +231,7 @@ bool Kernel<G, U, N, D, Z, L>::may_lift(const Lane& lane, Range across, Range up
     return pull * r.cosine >= weight * r.sine * (1.0 - 1e-12) || push * l.cosine >= weight * l.sine * (1.0 - 1e-12);
 }
 
-// Both sides uplift at once, for a ground that falls faster than gravity: against the push of the ground.
+// Both sides uplift at once if the ground falls faster than gravity. The body rotates against the push of the ground.
 ROCKING_KERNEL
 int Kernel<G, U, N, D, Z, L>::preferred(int i, std::int64_t at, double from) const {
     const double* a = motions.data + at;
@@ -247,7 +249,7 @@ void Kernel<G, U, N, D, Z, L>::lift(int i, std::int64_t at, int side, double whe
     u[i] = alpha[i];
     v[i] = 0.0;
     move(i, when);
-    for (int k = 8; k <= 32; k += 8) ROCKING_PREFETCH(motions.data + at + k);  // until its turn comes in step()
+    for (int k = 8; k <= 32; k += 8) ROCKING_PREFETCH(motions.data + at + k);  // used later in step()
     if (idx[i] >= last[i]) return finish(i, lane.uplifts || lane.impacts ? kRocked : kNoUplift, kGood);
     if (!lane.uplifts) lane.first_uplift = now(i, 0.0);
     ++lane.uplifts;

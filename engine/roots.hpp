@@ -1,12 +1,12 @@
-// First zero of a polynomial on (0, 1]: Bernstein coefficients exclude intervals, bisection isolates it, and
-// Newton's method within a bracket locates it to rounding. Grazing without crossing is no zero.
+// First zero of a polynomial on (0, 1]: Bernstein coefficients exclude intervals, bisection isolates the zero, and
+// Newton's method in a bracket locates it to rounding. A touch without a change of sign is not a zero.
 #pragma once
 #include "pack.hpp"
 
 namespace rocking {
 namespace ROCKING_ISA {
 
-// Values by even and odd powers: two short chains of multiply-adds instead of one long one.
+// Value from even and odd powers: two short chains of multiply-adds are faster than one long chain.
 template <int degree>
 inline double value_of(const double* c, double x) {
     const double z = x * x;
@@ -26,8 +26,8 @@ inline void slopes_of(const double* c, double* d) {
     for (int k = 1; k <= degree; ++k) d[k - 1] = k * c[k];
 }
 
-// Zero between low and high, where the polynomial changes sign from plus to minus; Newton from a guess, bracketed.
-// `curve` bounds half the second derivative.
+// Zero between low and high, where the polynomial changes from plus to minus: Newton's method in a bracket, from a
+// guess. `curve` bounds half the second derivative.
 template <int degree>
 inline double polished(const double* c, const double* d, double low, double high, double x, double curve) {
     for (int round = 0; round < 200; ++round) {
@@ -37,7 +37,7 @@ inline double polished(const double* c, const double* d, double low, double high
         double next = x - y / slope;  // Eq. 56
         if (!(next >= low && next <= high)) next = 0.5 * (low + high);
         const double move = std::fabs(next - x);
-        // Newton's next error is at most move^2 * curve / |slope|
+        // the next error of Newton's method is at most move^2 * curve / |slope|
         if (move <= 4.5e-16 * x || move * move * curve <= 1e-17 * std::fabs(slope) * x) return next;
         x = next;
     }
@@ -80,7 +80,7 @@ struct Isolation {
         right.high = piece.high;
     }
 
-    // Reports every place in (0, 1) at which the polynomial changes from plus to minus, in order.
+    // Reports all positions in (0, 1) at which the polynomial changes from plus to minus, in order.
     template <class Report>
     static void each(const double* c, const double* d, double curve, Report report) {
         Piece stack[64];
@@ -93,7 +93,7 @@ struct Isolation {
             for (int i = 1; i <= degree; ++i) changes += (piece.b[i] < 0.0) != (piece.b[i - 1] < 0.0);
             const bool narrow = depth + 2 > 64 || piece.high - piece.low < 1e-14;
             if (changes == 0 || (changes == 1 && piece.b[0] < 0.0)) continue;
-            int first = 0;  // a piece that starts on a zero falls there, or rises first
+            int first = 0;  // if a piece starts on a zero, the sign changes there, or the polynomial rises first
             while (piece.b[first] == 0.0) ++first;
             if (narrow || (changes == 1 && piece.b[first] < 0.0)) {
                 if (piece.b[degree] < 0.0 && !(piece.b[0] < 0.0) && piece.low > 0.0) report(piece.low);
@@ -132,24 +132,24 @@ struct Isolation {
     }
 };
 
-// Zero at which the parabola c0 + c1 x + c2 x^2 decreases, if it lies within (0, 1); otherwise one half.
+// Zero at which the parabola c0 + c1 x + c2 x^2 decreases, if this zero is in (0, 1); otherwise 1/2.
 inline double parabola_zero(double c0, double c1, double c2) {
     const double root = std::sqrt(std::max(c1 * c1 - 4.0 * c0 * c2, 0.0));
     const double x = c1 > 0.0 ? (root + c1) / (-2.0 * c2) : 2.0 * c0 / (root - c1);
     return x > 0.0 && x < 1.0 ? x : 0.5;
 }
 
-// Every place in (0, 1) at which a polynomial changes from plus to minus, in order.
+// Reports all positions in (0, 1) at which a polynomial changes from plus to minus, in order.
 template <int degree, class Report>
 inline void each_fall(const double* c, Report report) {
     double bend = 0.0, curve = 0.0, d[degree];
     if constexpr (degree > 2) {
-        if (c[0] == 0.0) return each_fall<degree - 1>(c + 1, report);  // divided by its known zero
+        if (c[0] == 0.0) return each_fall<degree - 1>(c + 1, report);  // divided by the known zero
         for (int k = 3; k <= degree; ++k) bend = fma(k * (k - 1.0), std::fabs(c[k]), bend);
     }
     slopes_of<degree>(c, d);
     curve = fma(0.5, bend, std::fabs(c[2]));
-    if (2.0 * std::fabs(c[2]) > bend) {  // curved one way: two zeros at most
+    if (2.0 * std::fabs(c[2]) > bend) {  // the curvature has one sign: two zeros at most
         const double end = value_of<degree>(c, 1.0);
         if (c[0] > 0.0 && end < 0.0)
             return report(polished<degree>(c, d, 0.0, 1.0, parabola_zero(c[0], c[1], c[2]), curve));
@@ -158,7 +158,7 @@ inline void each_fall(const double* c, Report report) {
     Isolation<degree>::each(c, d, curve, report);
 }
 
-// First zero in (0, 1] of a polynomial that starts above zero, or 2 if there is none.
+// First zero in (0, 1] of a polynomial with a positive start; 2 if there is no zero.
 template <int degree>
 inline double first_zero(const double* c) {
     double residual = 0.0, bend = 0.0, curve = 0.0;
@@ -172,7 +172,7 @@ inline double first_zero(const double* c) {
     if (c[0] > residual) return 2.0;
     double d[degree];
     slopes_of<degree>(c, d);
-    if (-c[1] > bend) {  // falling all the way: at most one zero, and a parabola is a good guess
+    if (-c[1] > bend) {  // the polynomial decreases everywhere: at most one zero, and a parabola gives a good guess
         const double end = value_of<degree>(c, 1.0);
         if (end > 0.0) return 2.0;
         if (end == 0.0) return 1.0;

@@ -1,4 +1,4 @@
-// Copies rows of the input into SIMD lanes, and results from the lanes.
+// Copies rows of the input into SIMD lanes, and results from the lanes to the output.
 #pragma once
 #include "kernel.hpp"
 
@@ -20,7 +20,7 @@ void Kernel<G, U, N, D, Z, L>::finish(int i, Outcome outcome, Status status) {
     rows.status[row] = status;
     rows.side[row] = outcome == kOverturned ? static_cast<std::int8_t>(lane.side) : 0;
     rows.still[row] = 0;
-    rows.peak[row] = down ? lane.side * kHalfPi : good ? lane.peak_signed : nan;  // it lies at a quarter turn
+    rows.peak[row] = down ? lane.side * kHalfPi : good ? lane.peak_signed : nan;  // a fallen body is at a quarter turn
     rows.peak_time[row] = down ? lane.over_time : good ? lane.peak_time : nan;
     rows.peak_velocity[row] = good ? fastest[i] / lane.step : nan;
     rows.overturning_time[row] = outcome == kOverturned ? lane.over_time : nan;
@@ -40,7 +40,7 @@ ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::idle(int i) {
     lanes[i].row = -1;
     u[i] = 0.0;
-    least[i] = least_before[i] = -1e300;  // nothing is beyond it
+    least[i] = least_before[i] = -1e300;  // no force is smaller
     v[i] = lever[i] = demand[i] = demand_before[i] = 0.0;
     tau[i] = kappa[i] = ca[i] = cz[i] = err[i] = fastest[i] = gate[i] = sub[i] = 0.0;
     idx[i] = 0;
@@ -48,7 +48,7 @@ void Kernel<G, U, N, D, Z, L>::idle(int i) {
     last[i] = std::numeric_limits<std::int64_t>::max();
 }
 
-// The queue is empty: the lanes of the last registers go where others have ended, so that all are full to the end.
+// The queue is empty. Lanes of the last registers move to free lanes, so that the remaining registers are full.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::close_ranks() {
     used -= Q;
@@ -79,7 +79,7 @@ bool Kernel<G, U, N, D, Z, L>::valid(const Rows& r, std::int64_t k, std::size_t 
     for (const double* p : {r.p_right, r.p_left})
         if (!(p[k] > 1e-9 && p[k] < 1e9)) return false;
     for (const double* q : {r.q_right, r.q_left})
-        if (q[k] <= 0.0 || q[k] > 1.000001) return false;  // NaN is not known: nor are the forces then
+        if (q[k] <= 0.0 || q[k] > 1.000001) return false;  // NaN: q is unknown, and then the forces are unknown too
     for (const double* e : {r.r_right, r.r_left})
         if (!(e[k] >= 0.0 && e[k] <= 100.0)) return false;
     for (const double* share : r.share)
@@ -88,7 +88,7 @@ bool Kernel<G, U, N, D, Z, L>::valid(const Rows& r, std::int64_t k, std::size_t 
            r.motion[k] >= 0 && r.motion[k] < static_cast<std::int64_t>(motions);
 }
 
-// Rows that are ready into a lane, until one stays there; the next one is made ready meanwhile.
+// Moves prepared rows into a lane until a row needs the lane, and prepares the next row.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::fill(int i) {
     idle(i);
@@ -101,7 +101,7 @@ void Kernel<G, U, N, D, Z, L>::fill(int i) {
     }
 }
 
-// The motion of the row at a position of the queue, if available.
+// The motion of the row at a position of the queue; null if there is no such row.
 ROCKING_KERNEL
 const Shake* Kernel<G, U, N, D, Z, L>::shake_of(std::int64_t position) const {
     if (position >= end) return nullptr;
@@ -109,14 +109,14 @@ const Shake* Kernel<G, U, N, D, Z, L>::shake_of(std::int64_t position) const {
     return k >= 0 && k < static_cast<std::int64_t>(motions.shakes.size()) ? &motions.shakes[k] : nullptr;
 }
 
-// The next available row that needs a lane, prepared; other rows are finished here.
+// Prepares the next row that needs a lane; writes the results of rows without motion.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::look_for_one() {
     ready.row = -1;
     while (next < end) {
         const std::int64_t row = listed(next++);
-        // Prefetch the data of later rows from memory. The call is here because compilers treat calls of functions
-        // without other effects as calls without effect.
+        // Prefetch the data of later rows. The prefetch is inside this function, because compilers may remove calls of
+        // functions without other effects.
         if (const Shake* shake = shake_of(next + 6)) {
             ROCKING_PREFETCH(shake);
             ROCKING_PREFETCH(reinterpret_cast<const char*>(shake + 1) - 1);
@@ -140,7 +140,7 @@ void Kernel<G, U, N, D, Z, L>::write_invalid(std::int64_t row) {
     rows.impacts[row] = rows.uplifts[row] = 0;
 }
 
-// Nothing lifts it.
+// Writes the results of a row without uplift.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::write_still(std::int64_t row) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -152,7 +152,8 @@ void Kernel<G, U, N, D, Z, L>::write_still(std::int64_t row) {
     rows.impacts[row] = rows.uplifts[row] = 0;
 }
 
-// All that a row needs before a lane is free for it. False if it needs none, since nothing lifts it: then it is done with.
+// Prepares a row before a lane is free. False if the row needs no lane, since nothing causes uplift; its results are
+// written.
 ROCKING_KERNEL
 bool Kernel<G, U, N, D, Z, L>::prepare(std::int64_t row) {
     ready.row = row;
@@ -192,7 +193,7 @@ bool Kernel<G, U, N, D, Z, L>::prepare(std::int64_t row) {
     return true;
 }
 
-// Puts the row that is ready into a lane.
+// Moves the prepared row into a lane.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::start(int i) {
     Lane& lane = lanes[i];
@@ -213,7 +214,7 @@ void Kernel<G, U, N, D, Z, L>::start(int i) {
     u[i] = alpha[i] - std::fabs(angle);
     v[i] = -lane.side * speed * lane.step;
     raise_peak(i, std::fabs(angle), 0.0);
-    if (u[i] < 0.0) {  // start beyond the top
+    if (u[i] < 0.0) {  // the body starts beyond the point of equilibrium
         const double* a = motions.data + idx[i];
         double s, c;
         sine_cosine(u[i], s, c);

@@ -1,5 +1,6 @@
-// Where polynomials fall through zero, several side by side: those that fall, or curve down, all the way have one zero,
-// and an iteration of third order finds it for all of them at once. Whatever is not that plain is left to roots.hpp.
+// Zeros at which polynomials decrease, for several polynomials in parallel. A polynomial that decreases, or is concave,
+// everywhere has one zero; an iteration of third order finds all such zeros together. roots.hpp handles other
+// polynomials.
 #pragma once
 #include "pack.hpp"
 
@@ -19,7 +20,7 @@ class SimpleRoots {
   public:
     Pack zero[M], slope[M];
 
-    // Returns which of them were plain.
+    // Returns flags of the polynomials that this method can handle.
     std::uint64_t solve(const Pack (*terms)[M]) {
         take(terms);
         std::uint64_t mask = 0;
@@ -32,7 +33,7 @@ class SimpleRoots {
     void take(const Pack (*terms)[M]) {
         const Pack none(0.0);
         Pack fall[M], bend[M], end[M];
-        // one that starts at zero is divided by that known zero
+        // a polynomial that starts at zero is divided by this known zero
         ROCKING_BOTH {
             fall[m] = bend[m] = none;
             arch[m] = (terms[0][m] == none) & (terms[1][m] > none);
@@ -60,8 +61,8 @@ class SimpleRoots {
         }
     }
 
-    // Halley's iteration, bracketed, from the zero of the parabola. A lane that has settled no longer moves, whatever
-    // the others do.
+    // Halley's iteration in a bracket, from the zero of the parabola. A converged lane no longer changes, whatever
+    // happens in the other lanes.
     void iterate() {
         const Pack none(0.0), half(0.5), one(1.0), two(2.0);
         Pack x[M], low[M], high[M];

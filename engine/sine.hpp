@@ -1,5 +1,5 @@
-// Sine and cosine for |x| <= pi / 2, as Taylor polynomials: the truncation error is below half a unit of one up to 1.2, and
-// below 3e-16 up to the end. A body with a larger rotation lies.
+// Sine and cosine for |x| <= pi / 2 as Taylor polynomials. The truncation error is below half a unit in the last place
+// of 1 for |x| up to 1.2, and below 3e-16 up to pi / 2. A body with a larger rotation lies on the ground.
 #pragma once
 #include "pack.hpp"
 

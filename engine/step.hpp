@@ -5,7 +5,8 @@
 namespace rocking {
 namespace ROCKING_ISA {
 
-// One Taylor step of every lane, then the events of those that have one. Lanes that may touch the ground are computed in parallel.
+// One Taylor step of every lane, then the events of the flagged lanes. Lanes that may touch the ground are computed in
+// parallel.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::sweep() {
     int landing[W], landings = 0;
@@ -36,11 +37,12 @@ void Kernel<G, U, N, D, Z, L>::sweep() {
     while (used > Q && active <= (used - Q) * P) close_ranks();
 }
 
-// One Taylor step of some registers; lanes that have an event keep their state until it is resolved. The loops stay
-// not unrolled: their bodies fill the window of out-of-order execution, and fit in the cache of decoded instructions.
+// One Taylor step of several registers; a lane with an event keeps its state until the event is resolved. The loops are
+// not unrolled: their bodies then fit in the window of out-of-order execution and in the cache of decoded instructions.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& near) {
-    // every lane reads its own motion, more streams than processors predict: prefetch one lane per step
+    // every lane reads its own motion, and there are too many streams for the processor to predict: prefetch one lane
+    // per step
     for (int r = 0; r < count; ++r) ROCKING_PREFETCH(motions.data + idx[base + r * P + work.sweeps % P] + 16);
     ROCKING_ROLLED
     for (int r = 0; r < count; ++r) {
@@ -54,7 +56,7 @@ void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& ne
     ROCKING_ROLLED
     for (int r = 0; r < count; r += Q) {
         Pack S[N + 1][Q], C[N + 1][Q], V[N + 1][Q], h[Q], qh[Q], w[Q];
-        Pack more[Q], size[Q], sway[Q];  // sums over the terms from V2 on: of rotation, of its bows, of velocity
+        Pack more[Q], size[Q], sway[Q];  // sums over the terms from V2 on: rotation, bounds of its curvature, velocity
         ROCKING_SIDE_BY_SIDE {
             const int at = base + (r + j) * P;
             h[j] = spans[r + j];
@@ -64,7 +66,7 @@ void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& ne
             S[0][j] = sines[r + j];
             C[0][j] = cosines[r + j];
         }
-        // New terms come last, so that dependent operations wait for few of them.
+        // The newest terms are used last, so that few dependent operations wait for them.
         ROCKING_UNROLL
         for (int k = 0; k < N; ++k) {
             const Pack inverse(1.0 / (k + 1)), shared(1.0 / (k + 2)), bow((k + 1.0) / (k + 2));
@@ -112,17 +114,18 @@ void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& ne
             const Pack u1 = u0 + du, v1 = fma(Pack::load(kappa + at) * h[j], w[j], v0);
 
             // With y = y0 + c1 x + c2 x^2 + ..., y >= y0 (1 - x) + y1 x - sag x (1 - x), where sag = c2+ + 2 c3+ + ...:
-            // no zero if sag < (sqrt y0 + sqrt y1)^2. A step that starts at y = 0 is divided by its known zero first.
+            // there is no zero if sag < (sqrt y0 + sqrt y1)^2. If y = 0 at the start, the polynomial is divided by this
+            // zero first.
             const Pack vh = v1 * h[j], away = zero - V[0][j], signs = vh - V[0][j] - V[1][j] - more[j];
             const Pack sag = Pack(0.5) * (max(zero - V[1][j], zero) + (size[j] - signs));
             const Pack y0 = Pack::load(alpha + at) - u0, y1 = y0 - du, start = select(y0 == zero, away, y0);
             const Pack low = min(start, y1);
             const Mask clear = (low > zero) & (fma(Pack(3.0), low, max(start, y1)) > sag);  // Eq. 55
-            // The velocity leaves the straight line between its ends by less than its sway.
+            // The velocity deviates from the straight line between its ends by less than `sway`.
             const Mask turns = ((v0 < zero) & (v1 >= zero)) | (sway[j] >= min(abs(V[0][j]), abs(vh)));
             const Mask turning = turns & (y0 + max(away, zero) + sag > Pack::load(peak + at));
             const Mask beyond = (u1 < Pack::load(gate + at)) | ((u1 < zero) & (fma(Pack(0.25), max(sag, zero), max(u0, u1)) >= zero));
-            // contact force at the start of the step, times the square of p h: see forces.hpp
+            // contact force at the start of the step, times (p h)^2: see forces.hpp
             Pack up = Z ? fma(z[0][r + j], qh[j], qh[j]) : qh[j], along = b[0][r + j] * qh[j];
             const Pack minus = Pack::load(lever + at);
             if (L) {
@@ -152,7 +155,7 @@ void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& ne
             select(event, i0, i1).store(idx + at);
             u1.store(u_end + at);
             v1.store(v_end + at);
-            // the range beyond a quarter turn is ignored
+            // errors beyond a quarter turn are ignored
             (Pack::load(err + at) + select(u1 > Pack(-kHalfPi), abs(V[N][j]), zero)).store(err + at);
             const Pack top = Pack::load(fastest + at);
             max(top, abs(v1)).store_where(goes, fastest + at);
@@ -163,7 +166,7 @@ void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& ne
     if (trace && lanes[0].row >= 0 && !(flagged & 1) && tau[0] == 0.0) sample(0);
 }
 
-// Series of the ground's acceleration over the step: s a_x / g in b, a_z / g in z.
+// Series of the ground acceleration over the step: s a_x / g in b, a_z / g in z.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::forcing(int base, int j) {
     const double* data = motions.data;

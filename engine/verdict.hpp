@@ -10,8 +10,8 @@ void Kernel<G, U, N, D, Z, L>::overturned(int i) {
     finish(i, kOverturned, kGood);
 }
 
-// Whether nothing that is still to come can bring the body back: beyond the top, moving out, and even the
-// strongest acceleration left, with the weakest gravity left, leaves it accelerating outwards.
+// True if no later ground motion can bring the body back: the body is beyond equilibrium, moves outwards, and
+// accelerates outwards even under the largest remaining acceleration and the smallest remaining weight.
 ROCKING_KERNEL
 bool Kernel<G, U, N, D, Z, L>::beyond_return(int i) const {
     if (!(v[i] <= 0.0)) return false;
@@ -25,8 +25,8 @@ bool Kernel<G, U, N, D, Z, L>::beyond_return(int i) const {
     return weight * s > back * c && weight > 0.0;  // Eq. 36
 }
 
-// Distance at which a body before the point of no return is checked again: where it would be under the motion from now
-// on, or on the ground; at least a thousandth further out.
+// Angle at which a body before the point of no return is checked again: the equilibrium under the strongest remaining
+// motion, or the ground, but at least 0.001 rad further out.
 ROCKING_KERNEL
 double Kernel<G, U, N, D, Z, L>::next_look(int i) const {
     double back, weight;
@@ -42,7 +42,7 @@ std::int64_t Kernel<G, U, N, D, Z, L>::block_at(int i) const {
     return lane.block + k / kBlock;
 }
 
-// From now on, over gravity: the largest push of the ground against the rotation, and the smallest weight.
+// For the remaining motion, over gravity: largest push of the ground against the rotation, and smallest weight.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::still_to_come(int i, double& back, double& weight) const {
     const std::int64_t block = block_at(i);
@@ -51,11 +51,11 @@ void Kernel<G, U, N, D, Z, L>::still_to_come(int i, double& back, double& weight
     weight = 1.0 + std::min({0.0, lanes[i].az * lift.low, lanes[i].az * lift.high});
 }
 
-// After the motion the energy decides: e = u'^2 / (2 p^2) + cos u - cos alpha against 1 - cos alpha at the top.
+// After the motion the energy decides: e = u'^2 / (2 p^2) + cos u - cos alpha; e = 1 - cos alpha at the equilibrium.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::conclude(int i) {
     Lane& lane = lanes[i];
-    if (has_peaks(i)) find_peaks();  // in their order, so that the first of several equal values counts
+    if (has_peaks(i)) find_peaks();  // in order, so that the first of equal peaks is recorded
     raise_peak(i, alpha[i] - u[i], now(i, 0.0));
     if (idx[i] >= last[i]) force_at_end(i);
     const double speed = v[i] / lane.step;
@@ -65,7 +65,8 @@ void Kernel<G, U, N, D, Z, L>::conclude(int i) {
         if (!(lane.over_time >= 0.0)) forces_up_to_here(i);
         return overturns(i, lane.over_time >= 0.0 ? lane.over_time : now(i, 0.0));
     }
-    if (!inward && passes) {  // on resting ground the force grows from here to the top, unless it pulls or q < 0.3
+    // on resting ground the force increases from here to equilibrium, unless it is tensile or q < 0.3
+    if (!inward && passes) {
         double s, c;
         sine_cosine(u[i], s, c);
         force_at(i, s, c, v[i], 0.0, 1.0);
@@ -75,7 +76,8 @@ void Kernel<G, U, N, D, Z, L>::conclude(int i) {
     if (!inward) raise_peak(i, height(here(i), e), now(i, 0.0));
     double arrival = here(i).p * std::sqrt(2.0 * std::max(e, 0.0));
     fastest[i] = std::max(fastest[i], arrival * lane.step);
-    for (int flight = 0; flight < 2; ++flight) {  // each later visit to a side has less energy than the one before
+    // every later contact with a side has less energy than the previous contact
+    for (int flight = 0; flight < 2; ++flight) {
         touch(i, arrival * lane.step, 0.0, 1.0);
         lane.side = -lane.side;
         stand(i);
@@ -89,7 +91,7 @@ void Kernel<G, U, N, D, Z, L>::conclude(int i) {
         }
         raise_peak(i, height(here(i), f), now(i, 0.0));
     }
-    lane.impacts -= 2;  // those to come are not counted unless they end in overturning
+    lane.impacts -= 2;  // later impacts are counted only if the body overturns
     const std::int64_t row = lane.row;
     finish(i, kRocked, kGood);
     rows.still[row] = rows.outcome[row] == kRocked;
@@ -101,7 +103,7 @@ void Kernel<G, U, N, D, Z, L>::overturns(int i, double when) {
     finish(i, kOverturned, kGood);
 }
 
-// Energy over m g R above rest; 1 - cos x written as 2 sin^2(x / 2) keeps its digits.
+// Energy over m g R, relative to rest. The form 2 sin^2(x / 2) of 1 - cos x avoids loss of digits.
 ROCKING_KERNEL
 double Kernel<G, U, N, D, Z, L>::energy(const Side& s, double u_, double speed) {
     const double kinetic = 0.5 * speed * speed / (s.p * s.p);

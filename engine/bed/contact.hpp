@@ -6,7 +6,7 @@
 
 #include "radau.hpp"
 
-// A loop over points is compiled twice where the compiler can choose at run time.
+// The compiler makes two versions of a loop over points, if the choice between them is possible at run time.
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__GLIBC__)
 #define ROCKING_BED_CLONES __attribute__((target_clones("avx2", "default")))
 #else
@@ -17,10 +17,11 @@ namespace rocking::bed {
 
 enum Law : int { kKelvinVoigt = 0, kHuntCrossley = 1, kPlastic = 2 };
 enum Friction : int { kSticking = 0, kCoulomb = 1, kRegularised = 2 };
-// away: no contact; pressing: loading; lagging: the bed is slower than the body, no force; spring: unloading
+// Modes of a point. away: no contact. pressing: loading. lagging: no force, since the bed recovers slower than the body
+// rises. spring: unloading.
 enum class Mode : std::uint8_t { away, pressing, lagging, spring };
 
-struct Points {  // towards the new foot; share: copies of the law under the point
+struct Points {  // at: positions, positive towards the new foot. share: weights of the points in the contact law.
     std::int64_t count = 0;
     const double *at = nullptr, *height = nullptr, *share = nullptr;
 };
@@ -34,10 +35,11 @@ struct Problem {
     Points points;
 };
 
-using State = Vector<5>;  // y, theta, u, w, omega: height and rotation of the base centre, velocities along and across the base
+// y, theta: height and rotation of the base centre; u, w, omega: velocities along and across the base, rotation rate
+using State = Vector<5>;
 enum { kY, kTheta, kU, kW, kOmega };
 
-struct Place {  // gap = y - s sigma + zeta kappa, and its rate
+struct Place {  // position of the base: gap of a point = y - s sigma + zeta kappa, and its rate
     double y, sigma, kappa, dy, dsigma, dkappa, sine, cosine;
     double gap(double s, double zeta) const { return y - s * sigma + zeta * kappa; }  // Eq. 122
     double rate(double s, double zeta) const { return dy - s * dsigma + zeta * dkappa; }
@@ -45,7 +47,7 @@ struct Place {  // gap = y - s sigma + zeta kappa, and its rate
 
 inline void sine_and_cosine(double angle, double& s, double& c) {
     const double q = angle * angle;
-    if (q < 0.01) {  // largest value in an impact; the omitted terms are below 1e-19
+    if (q < 0.01) {  // rotations in an impact are smaller; the omitted terms are below 1e-19
         s = angle * (1.0 + q * (-1.0 / 6.0 + q * (1.0 / 120.0 + q * (-1.0 / 5040.0 + q * (1.0 / 362880.0 - q / 39916800.0)))));
         c = 1.0 + q * (-0.5 + q * (1.0 / 24.0 + q * (-1.0 / 720.0 + q * (1.0 / 40320.0 - q / 3628800.0))));
         return;
@@ -61,7 +63,7 @@ inline Place place(const State& x, bool exact) {
     return {x[kY], s, c, x[kW] * c - x[kU] * s, c * x[kOmega], -s * x[kOmega], s, c};
 }
 
-// Sums over points that make a linear law independent of their number.
+// Sums over all points. With them the cost of a linear law does not depend on the number of points.
 struct Sums {
     double one = 0, s = 0, ss = 0, z = 0, sz = 0, zz = 0;
     void add(double k, double at, double height) {
@@ -77,11 +79,11 @@ struct Sums {
     }
 };
 
-struct Load {  // resultant, its moments with s and zeta, power lost in the bed; of power laws also the energy stored
+struct Load {  // resultant, its moments with s and zeta, power lost in the bed, and for power laws the stored energy
     double force = 0, moment = 0, tilt = 0, loss = 0, stored = 0;
 };
 
-// Touching points of a power law, in columns; pressing: 1, or 0 if the bed is slower than the body.
+// Touching points of a power law, in columns. pressing: 1, or 0 if the point is lagging.
 struct Touching {
     static constexpr std::size_t kLanes = 8;
     std::vector<double> at, height, stiffness, pressing;
@@ -94,7 +96,7 @@ struct Touching {
     }
 };
 
-// Several points at a time. Each lane has its own sums, so that all instruction sets give the same bits.
+// Computes several points at a time. Every lane has its own sum. Therefore all instruction sets give the same bits.
 ROCKING_BED_CLONES inline Load sum_of_powers(const Touching& t, const Place& x, double viscosity) {
     constexpr std::size_t n = Touching::kLanes;
     double force[n] = {}, moment[n] = {}, tilt[n] = {}, loss[n] = {}, stored[n] = {};
@@ -134,7 +136,7 @@ public:
     double rate(std::int64_t i, const Place& x) const { return x.rate(p_.points.at[i], p_.points.height[i]); }
     double set(std::int64_t i) const { return p_.law == kPlastic ? (1.0 - p_.rebound * p_.rebound) * deepest[i] : 0.0; }
 
-    void gather() {  // after every switch
+    void gather() {  // required after every switch
         elastic_ = viscous_ = lost_ = Sums{};
         offset_ = offset_s_ = offset_z_ = 0.0;
         pressing = 0;
@@ -205,7 +207,7 @@ public:
         return share * p_.stiffness * power(d) * d / (p_.exponent + 1.0);  // Eq. 121
     }
 
-    // Positive while the mode of point i holds; `which`: 0 or 1.
+    // Margin `which` (0 or 1) of point i: positive as long as the mode of the point remains valid.
     double margin(std::int64_t i, int which, const Place& x) const {
         const double d = -gap(i, x);
         switch (mode[i]) {
@@ -238,7 +240,8 @@ public:
         return is_single ? 1 : 2;
     }
 
-    void change(std::int64_t i, int which, const Place& x) {  // margin `which` of point i has run out
+    // changes the mode of point i after its margin `which` has reached zero
+    void change(std::int64_t i, int which, const Place& x) {
         switch (mode[i]) {
             case Mode::away: mode[i] = p_.law == kPlastic && deepest[i] > 0.0 && p_.rebound > 0.0 ? Mode::spring : Mode::pressing; break;
             case Mode::pressing:
@@ -274,7 +277,8 @@ private:
     const Problem& p_;
     Sums elastic_, viscous_, lost_;
     double offset_ = 0.0, offset_s_ = 0.0, offset_z_ = 0.0;
-    double middle_s_ = 0.0, middle_z_ = 0.0;  // sums are about a point that touches: about the base centre, gaps drown in rounding
+    // sums refer to a touching point; about the base centre the rounding errors would be larger than the gaps
+    double middle_s_ = 0.0, middle_z_ = 0.0;
 
     double power(double d) const { return p_.exponent == 1.5 ? d * std::sqrt(d) : std::pow(d, p_.exponent); }
     double push(double d, double v) const {
@@ -303,7 +307,7 @@ public:
     std::vector<Mode> mode;
     std::vector<double> deepest;
     std::int64_t pressing = 0;
-    bool flat = true, affine = true;  // margins of points of one mode are straight lines over the base
+    bool flat = true, affine = true;  // true if the margins of points of the same mode are linear along the base
 };
 
 }  // namespace rocking::bed

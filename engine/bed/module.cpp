@@ -1,4 +1,4 @@
-// Interface to Python: one impact with its history, or many with their results. Threads take independent rows.
+// Interface to Python: one impact with its history, or many impacts with their results. Threads take independent rows.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 

@@ -62,7 +62,7 @@ public:
         return energy(x, at, travel, bed_.linear() ? stored(at) : rates.stored);
     }
 
-    // Kinetic, potential and elastic.
+    // Kinetic, potential and elastic energy.
     double energy(const State& x, const Place& at, double travel, double elastic) const {
         const double u = x[kU] + p_.height * x[kOmega], w = x[kW], omega = x[kOmega];
         const double fall = at.sine * at.sine / (1.0 + at.cosine);
@@ -76,7 +76,7 @@ public:
         return sum;
     }
 
-    // Positive while the friction state holds.
+    // Positive as long as the friction state remains valid.
     double friction_margin(const State& x) const {
         if (p_.kind != kCoulomb) return 1.0;
         return slip != 0 ? slip * x[kU] : friction_margin(x, rates(x));
@@ -86,7 +86,7 @@ public:
         return slip != 0 ? slip * x[kU] : p_.friction * r.normal - std::abs(r.shear);
     }
 
-    // After a switch: sticking if possible, otherwise the direction of sliding.
+    // New friction state after a switch: sticking if possible, otherwise sliding in one direction.
     void settle_friction(const State& x, bool at_rest, bool leaves = false) {
         if (p_.kind != kCoulomb || (slip != 0 && !at_rest)) return;
         slip = 0;

@@ -1,4 +1,5 @@
-// Radau IIA with five stages (order 9, L-stable, stiffly accurate) for small systems, with its collocation polynomial.
+// Radau IIA method with five stages (order 9, L-stable, stiffly accurate) for small systems, with its collocation
+// polynomial.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -11,7 +12,7 @@ constexpr int kStages = 5;
 template <std::size_t N>
 using Vector = std::array<double, N>;
 
-// Collocation at the zeros of the Radau polynomial; the matrices follow from the nodes by linear algebra in 60 digits.
+// Collocation at the zeros of the Radau polynomial. The matrices were computed from the nodes with 60 digits.
 namespace radau {
 constexpr double node[kStages] = {0.057104196114517682193, 0.27684301363812382768, 0.58359043236891682006, 0.86024013565621944785, 1.0};
 constexpr double weight[kStages] = {0.14371356079122594132, 0.28135601514946206019, 0.31182652297574125408, 0.22310390108357074440, 0.04};
@@ -61,7 +62,7 @@ inline double inverse(double a) { return 1.0 / a; }
 inline double size(Complex a) { return std::abs(a.re) + std::abs(a.im); }
 inline double size(double a) { return std::abs(a); }
 
-// LU with row pivots of a small matrix.
+// LU factorization of a small matrix, with row pivots.
 template <std::size_t N, class T>
 struct Solver {
     T a[N][N];
@@ -97,8 +98,8 @@ struct Solver {
     }
 };
 
-// (lambda / h - J) x = r for a state of two positions and three velocities, by elimination of the positions: a matrix of three
-// rows. The effect of the positions on their own rates is neglected, and Newton's method corrects this error.
+// Solves (lambda / h - J) x = r for a state of two positions and three velocities: elimination of the positions leaves
+// three rows. The effect of the positions on their own rates is neglected; Newton's method corrects this error.
 template <class T>
 class Reduced {
 public:
@@ -137,7 +138,7 @@ private:
 // One step: stages, end and error estimate of y' = f(y).
 template <std::size_t N>
 struct Step {
-    Vector<N> start, stage[kStages];  // stage[k]: the state at node k; the last one is the end
+    Vector<N> start, stage[kStages];  // stage[k]: state at node k; the last stage is the end of the step
     double h = 0.0, error = 0.0;
     const Vector<N>& end() const { return stage[kStages - 1]; }
     Vector<N> at(double tau) const {
@@ -154,7 +155,7 @@ struct Step {
     }
 };
 
-// Field and derivative at a state, common to all steps from this state.
+// Rates and their derivatives at a state, used by all steps from this state.
 template <std::size_t N>
 struct Tangent {
     Vector<N> slope;
@@ -175,15 +176,15 @@ Tangent<N> tangent(const Field& f, const Vector<N>& y, const Vector<N>& nudge) {
     return t;
 }
 
-// Start of Newton's method: states at the nodes from the polynomial of a containing or preceding step.
+// Initial values of Newton's method: states at the nodes, from the polynomial of a step that contains or precedes them.
 template <std::size_t N>
 struct Guess {
     bool any = false;
     Vector<N> stage[kStages];
 };
 
-// Simplified Newton on the collocation equations; false if it does not settle. `unit`: the error allowed per component.
-// `contraction`: that of Newton's method in the step before, on return that of this one.
+// Simplified Newton method for the collocation equations; false if it does not converge. `unit`: allowed error per
+// component. `contraction`: ratio of successive changes in the previous step; on return in this step.
 template <std::size_t N, class Field>
 bool take_step(const Field& f, const Vector<N>& y, double h, const Vector<N>& unit, const Tangent<N>& local, const Guess<N>& guess,
                double& contraction, Step<N>& out) {
@@ -245,7 +246,7 @@ bool take_step(const Field& f, const Vector<N>& y, double h, const Vector<N>& un
         if (!(change < 1e30)) return false;
         if (round > 0) contraction = before > 0.0 ? std::max(change / before, 0.1 * contraction) : contraction;
         if (round > 1 && contraction > 2.0) return false;
-        // the remaining change is about rate / (1 - rate) of the last one
+        // the remaining change is about rate / (1 - rate) times the last change
         settled = change <= 1e-3 || (contraction < 0.5 && change * contraction / (1.0 - contraction) <= 1e-2);
         before = change;
     }

@@ -1,4 +1,4 @@
-// One impact from its start to its end: adaptive steps between switches, each switch at the end of a step.
+// One impact from its start to its end, with adaptive steps. Every switch is at the end of a step.
 #pragma once
 #include <limits>
 
@@ -6,10 +6,12 @@
 
 namespace rocking::bed {
 
-constexpr double kLeak = 0.09;   // allowed energy error of a step, over tolerance and energy of the impact
-constexpr double kBudget = 7.0;  // energy error budget of an impact: the smaller the remainder, the smaller the allowance of a step
-constexpr double kLeast = 3e-4;  // fraction of the budget that is always allowed, near rounding
-constexpr double kAgain = 1.2;   // first step after a switch over the last such step, where forces begin as d^n
+constexpr double kLeak = 0.09;   // allowed energy error of a step / (tolerance * energy of the impact)
+// energy error budget of an impact; the allowed error of a step decreases with the remaining budget
+constexpr double kBudget = 7.0;
+constexpr double kLeast = 3e-4;  // fraction of the budget that a step may always use; near rounding
+// first step after a switch / previous first step after a switch, for forces that begin as d^n
+constexpr double kAgain = 1.2;
 
 class Run : Switches {
 public:
@@ -23,7 +25,8 @@ public:
         if (p.kind == kRegularised) nudge_[kU] = std::min(nudge_[kU], 1e-3 * p.creep);
         const double turn = 0.5 * v / b;
         leak_ = std::max(kLeak * start.tolerance, 2e-14) * 0.5 * (p.inertia + p.mass * (p.height * p.height + b * b)) * turn * turn;
-        // the estimate has order 5, the step order 9: the power of the two, as in Hairer & Wanner's codes of this family
+        // the estimate has order 5, the step has order 9: the exponent converts the tolerance, as in the codes of
+        // Hairer & Wanner
         estimate_ = std::max(0.1 * std::pow(start.tolerance, 0.6) / start.tolerance, 1.0);
         instant_ = std::max(start.tolerance, 1e-12) * d / v;
     }
@@ -69,7 +72,8 @@ private:
     double after_ = 0.0;
     bool after_switch_ = false;
     int stuck_ = 0, early_ = 0, late_ = 0;
-    enum class Known { nothing, ahead, within } known_ = Known::nothing;  // times after x_ for which step_ is valid
+    // part of the time after x_ for which step_ is valid
+    enum class Known { nothing, ahead, within } known_ = Known::nothing;
     bool local_known_ = false;
     Tangent<5> local_;
 
@@ -108,7 +112,7 @@ private:
             }
             if (tau <= 0.0) {  // the mode has already ended
                 if (react()) return;
-                if (++stuck_ > 100) {  // on the edge of two modes: a short step in the one that keeps the energy
+                if (++stuck_ > 100) {  // between two modes: use a short step in the mode that conserves the energy
                     h = 1e-4 * start_.depth / start_.speed;
                     calm();
                 }
@@ -141,13 +145,13 @@ private:
         out_.status = kTimeOut;
     }
 
-    // Allowed energy error of a step: decreases with the used budget, unless the error has the opposite sign.
+    // Allowed energy error of a step. It decreases with the used budget, unless the error has the opposite sign.
     double allowance(double leak) const {
         const double used = leak * out_.residual > 0.0 ? std::abs(out_.residual) / (kBudget / kLeak * leak_) : 0.0;
         return leak_ * std::max(1.0 - used, kLeast);
     }
 
-    // A step from x_; its initial guess is from the last step, which ended at x_ or was rejected there.
+    // Makes a step from x_. The initial values are from the last step, which ended at x_ or was rejected there.
     bool attempt(double h) {
         if (!local_known_) local_ = tangent(motion_, x_, nudge_);
         local_known_ = true;
@@ -167,13 +171,14 @@ private:
         return true;
     }
 
-    void forget() {  // the equations change
+    void forget() {  // for use after a change of the equations
         local_known_ = false;
         known_ = Known::nothing;
         contraction_ = 1.0;
     }
 
-    // Ends the step at the first switch: found on its polynomial, then on that of the shorter step itself.
+    // Ends the step at the first switch. The switch is located on the polynomial of the step, then on that of the
+    // shorter step.
     bool shorten(double tau) {
         if (tau >= 1.0) return true;
         const Step<5> covering = step_;
@@ -192,10 +197,10 @@ private:
             if ((late >= 0.0 && late <= instant_) || !(fall > 0.0) || more > std::max(0.02 * h, instant_) || more < -0.5 * h) break;
             h += more;
         }
-        // a step that ends late may have passed another switch: use a shorter one
+        // a step that ends late may contain another switch: use a shorter step
         late_ = late > instant_ ? late_ + 1 : 0;
         if (late_ > 0 && late_ <= 3) return false;
-        // on its own polynomial the step ends before the switch, or grazes it; the number of repetitions is limited
+        // the shorter step ends before the switch, or only touches it; the number of repetitions is limited
         early_ = early ? early_ + 1 : 0;
         if (early && early_ <= 3) causes_.clear();
         look_at_nodes();
@@ -225,7 +230,7 @@ private:
         return d;
     }
 
-    // Greatest force and depth at the nodes, and between them where the parabola through three has its top.
+    // Largest force and depth at the nodes, and between nodes at the vertex of the parabola through three nodes.
     void crests() {
         for (int which = 0; which < 2; ++which) {
             double g[kStages + 1];
@@ -281,7 +286,7 @@ private:
         for (std::int64_t i = 0; i < p_.points.count; ++i) trace_->forces.push_back(bed_.force(i, at));
     }
 
-    // Carries the switches out; true at the peak.
+    // Applies the switches; true at the peak.
     bool react() {
         bool peak = false, rest = x_[kU] == 0.0, leaves = false;
         const Place at = place(x_, p_.exact);
@@ -292,7 +297,8 @@ private:
             if (c.point == -2) {
                 peak = true;
             } else if (c.point == -1) {
-                if (motion_.slip != 0 && std::abs(x_[kU]) > std::max(1e-9 * start_.speed, 10.0 * unit_[kU])) {  // reversed sliding
+                // the sliding has reversed
+                if (motion_.slip != 0 && std::abs(x_[kU]) > std::max(1e-9 * start_.speed, 10.0 * unit_[kU])) {
                     motion_.slip = x_[kU] > 0.0 ? 1 : -1;
                     continue;
                 }
@@ -304,7 +310,7 @@ private:
                 const double kept = bed_.stored(c.point, at);
                 const Mode was = bed_.mode[c.point];
                 bed_.change(c.point, c.which, at);
-                // points that touched during the step to the switch
+                // points that began to touch during the step before the switch
                 if (was == Mode::spring && bed_.mode[c.point] == Mode::pressing) out_.bed_loss += kept - bed_.stored(c.point, at);
                 note(c.point, before, holds(c.point));
             }
@@ -319,7 +325,7 @@ private:
         return true;
     }
 
-    // A shear impulse removes the remaining sliding: its moment turns the body, its work is counted.
+    // A shear impulse stops the remaining sliding. Its moment rotates the body. The energy balance includes its work.
     void arrest() {
         const double h = p_.height, inertia = p_.inertia + p_.mass * h * h, impulse = -p_.mass * p_.inertia / inertia * x_[kU];
         out_.friction_loss -= 0.5 * impulse * x_[kU];
@@ -364,7 +370,7 @@ private:
         return true;
     }
 
-    // The impact ends when only the new foot is in contact, and at rest.
+    // The impact ends when only the new foot is in contact and is at rest.
     bool ended() {
         if (start_.end == kAtTime || out_.touch < 0.0) return false;
         const double slow = start_.end == kAtParting ? 1e-10 : (1.0 + 1e-6) * kArrested;

@@ -1,5 +1,6 @@
-// A step and the first switch inside it: a point that touches, parts or turns, a base that slips or sticks, the peak, and
-// where the new foot is arrested while it presses alone: the end of the impact.
+// A step and the first switch in it: a point begins or ends contact or changes its mode, the base starts or stops
+// sliding, the rotation reaches its peak, or the new foot alone presses and comes to rest (arrest), which ends the
+// impact.
 #pragma once
 #include "motion.hpp"
 #include "result.hpp"
@@ -22,7 +23,7 @@ protected:
     Motion motion_;
     State x_{}, unit_{}, just_after_{};  // just_after_: the first switch found so far
     Step<5> step_;
-    Place places_[kStages + 1];  // at the start and the nodes of the step
+    Place places_[kStages + 1];  // positions of the base at the start and at the nodes of the step
     Rates rates_[kStages + 1];
     std::vector<Cause> causes_;
     double first_ = 1.0, estimate_ = 1.0;
@@ -38,7 +39,7 @@ protected:
 
     double peak_margin(const State& x) const { return start_.end == kAtPeak ? x[kOmega] : 1.0; }
 
-    // Ratio to the landing speed below which the new foot is at rest.
+    // Fraction of the landing speed below which the new foot is at rest.
     static constexpr double kArrested = 1e-3;
 
     double arrest_margin(const Place& at) const { return -bed_.rate(start_.new_foot, at) - kArrested * start_.speed; }
@@ -50,7 +51,7 @@ protected:
         return bed_.margin(c.point, c.which, place(x, p_.exact));
     }
 
-    // The first switch inside the step, as a fraction of it; causes_ holds its causes.
+    // The first switch in the step, as a fraction of the step; causes_ contains its causes.
     double first_cause() {
         causes_.clear();
         first_ = 1.0;
@@ -76,7 +77,8 @@ protected:
         return causes_.empty() ? 1.0 : first_;
     }
 
-    // Points i to j of one mode. If margins are linear and the end points are far from a switch, all points between are too.
+    // Examines points i to j of one mode. If the margins are linear and far from zero at i and j, no point between has
+    // a switch.
     void look_along(std::int64_t i, std::int64_t j) {
         double g[2][kStages + 1], other[2][kStages + 1];
         const int kinds = bed_.margins(i, places_, g);
@@ -105,19 +107,21 @@ protected:
         return {low, std::max(high, g[0]) - std::min(low, g[0])};
     }
 
-    // Adds a margin that runs out before those found so far; g: its values at the start and at the nodes.
+    // Adds a switch if margin c reaches zero before the known switches; g: values of the margin at the start and at the
+    // nodes.
     void look(Cause c, const double* g) {
         const Span s = span(g);
-        if (s.low <= 0.6 * s.range) search(c, g, s.range);  // else too far off to dip below zero between nodes
+        if (s.low <= 0.6 * s.range) search(c, g, s.range);  // larger margins cannot reach zero between nodes
     }
 
     void search(Cause c, const double* g, double range) {
         double from = 0.0, to = 2.0;
-        // a base that has just begun to slide has a speed of the size of its error
+        // when sliding has just begun, the error of the sliding speed is as large as the speed
         const double floor = c.point == -1 && motion_.slip != 0 && x_[kU] == 0.0 ? unit_[kU] : 0.0;
         for (int k = kStages; k >= 1; --k)
             if (g[k] < -floor) from = instant(k - 1), to = instant(k);
-        for (int k = 1; k < kStages && instant(k - 1) < to; ++k) {  // a dip between nodes, from the parabola through three
+        // minimum between nodes, from the parabola through three nodes
+        for (int k = 1; k < kStages && instant(k - 1) < to; ++k) {
             const double x0 = instant(k - 1), x1 = instant(k), x2 = instant(k + 1);
             const double first = (g[k] - g[k - 1]) / (x1 - x0), bend = ((g[k + 1] - g[k]) / (x2 - x1) - first) / (x2 - x0);
             if (!(bend > 0.0)) continue;
@@ -128,7 +132,7 @@ protected:
         }
         if (to > 1.0 || from > first_ + 1e-12) return;
         if (to > first_ + 1e-12 && first_ < 1.0) {
-            if (margin(c, just_after_) > 0.0) return;  // it comes later
+            if (margin(c, just_after_) > 0.0) return;  // this switch is later
             to = first_ + 1e-12;
         }
         c.at = root(c, from, to);
@@ -143,7 +147,8 @@ protected:
     double root(const Cause& c, double low, double high) const {
         const double from = low;
         double f_low = margin(c, step_.at(low)), f_high = margin(c, step_.at(high));
-        if (f_low <= 0.0 && c.point == -1 && motion_.slip != 0 && x_[kU] == 0.0)  // begins to slide at zero, and comes back to it
+        // the sliding speed starts at zero and returns to zero
+        if (f_low <= 0.0 && c.point == -1 && motion_.slip != 0 && x_[kU] == 0.0)
             for (double fraction = 0.5; fraction > 1e-4 && f_low <= 0.0; fraction *= 0.5) low = fraction * high, f_low = margin(c, step_.at(low));
         if (f_low <= 0.0) return from;
         for (int round = 0; round < 60 && high - low > 1e-14; ++round) {
@@ -157,7 +162,7 @@ protected:
         return high;
     }
 
-    // Where the parabola through nodes k - 1, k, k + 1 turns.
+    // Position of the vertex of the parabola through nodes k - 1, k, k + 1.
     static double vertex(int k, const double* g) {
         const double x0 = instant(k - 1), x1 = instant(k), x2 = instant(k + 1);
         const double first = (g[k] - g[k - 1]) / (x1 - x0), bend = ((g[k + 1] - g[k]) / (x2 - x1) - first) / (x2 - x0);

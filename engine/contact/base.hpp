@@ -1,4 +1,4 @@
-// A body on its two feet, seen from its centre of mass, per unit of mass: x to the right, z upwards, theta clockwise.
+// A body on two feet, described from its centre of mass, per unit of mass: x to the right, z upwards, theta clockwise.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@ enum Outcome : std::int64_t { kNoUplift, kRocked, kOverturned, kFailed, kSlid, k
 enum Status : std::int64_t { kGood = 0, kInvalid = 1, kNotFinite = 2, kTooManyEvents = 3, kStuck = 6, kNoForce = 7 };
 enum class Bounce : std::int64_t { newton, poisson, stronge };
 
-// Sine and cosine for |x| <= pi / 2 by their series, with the same bits on all processors.
+// Sine and cosine for |x| <= pi / 2, as series that give the same bits on all processors.
 struct Terms {
     double term[22] = {1.0, 1.0};
     constexpr Terms() {
@@ -33,7 +33,7 @@ inline void sine_cosine(double x, double& sine, double& cosine) {
 
 struct Base {
     double inertia, height, lever[3];  // j = I_C / m; h; d of the left foot [1] and of the right one [2]
-    double size, pace, slow, alpha[3];  // R; sqrt(g / R); speed that counts as zero; slenderness angle of each side
+    double size, pace, slow, alpha[3];  // R, sqrt(g / R), speed that counts as zero, slenderness angles of both sides
     double width() const { return lever[kRight] - lever[kLeft]; }
 };
 
@@ -42,13 +42,13 @@ struct State {
     int touching = kBoth;
 };
 
-// Position of a foot relative to the centre, and rise of the centre above rest while that foot is in contact.
+// Position of a foot relative to the centre of mass, and rise of the centre above rest while that foot is in contact.
 struct Arm {
     double x, z, rise;
 };
 
 inline Arm arm(const Base& b, double lever, double rotation) {
-    double sine, cosine;  // of half the rotation
+    double sine, cosine;  // sine and cosine of half the rotation
     sine_cosine(0.5 * rotation, sine, cosine);
     const double turned = 2.0 * sine * cosine, lowered = 2.0 * sine * sine, upright = 1.0 - lowered;
     return {lever * upright - b.height * turned, -lever * turned - b.height * upright, lever * turned - b.height * lowered};  // Eq. 58, 59
@@ -67,7 +67,7 @@ struct Mode {
 };
 constexpr Mode kRest{kBoth, 0}, kFlight{0, 0};
 
-// The state with exact contact conditions.
+// The state, corrected to satisfy the contact conditions exactly.
 inline State kept(const Base& b, State s, int feet, bool stick) {
     if (!feet) return s;
     if (feet == kBoth) {

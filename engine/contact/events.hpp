@@ -1,4 +1,4 @@
-// Functions that are positive during a mode, their sign just after the start, and their first zero.
+// Functions that are positive as long as a mode is valid, their sign just after the start, and their first zero.
 #pragma once
 #include "series.hpp"
 
@@ -8,8 +8,8 @@ enum class End { none, landing, loss_of_contact, slipping, sticking, lying };
 
 struct Function {
     End kind;
-    int exact;     // leading coefficients that carry no rounding
-    double scale;  // scale of the rounding of the other coefficients
+    int exact;     // number of leading coefficients without rounding errors
+    double scale;  // scale of the rounding errors of the other coefficients
     double c[kTerms];
 };
 
@@ -54,7 +54,8 @@ inline void functions_of(const Base& b, Mode m, const Series& c, double mu, doub
     right[0] += kHalfPi, left[0] += kHalfPi;
 }
 
-// Index of the coefficient that decides the sign of a function just after the start; -1 if all are zero.
+// Index of the coefficient that determines the sign of a function just after the start; -1 if all coefficients are
+// zero.
 inline int leading(const Function& f, int n, double stretch, double tolerance) {
     double bound = tolerance * f.scale;
     for (int k = 0; k < std::min(n, 7); ++k) {
@@ -76,7 +77,7 @@ inline bool consistent(const Functions& f, double stretch, double tolerance) {
     return true;
 }
 
-// Newton's method, kept between two points at which the signs differ.
+// Newton's method between two points with different signs.
 inline double zero_between(const double* c, int n, double low, double high) {
     const bool rises = value(c, n, low) < 0.0;
     double x = 0.5 * (low + high);
@@ -91,7 +92,7 @@ inline double zero_between(const double* c, int n, double low, double high) {
     return x;
 }
 
-// Sign changes on [0, 1], and slightly beyond: at most one between two zeros of the slope.
+// Sign changes on [0, 1] and slightly beyond; at most one sign change lies between two zeros of the slope.
 inline int zeros(const double* c, int n, double* out) {
     while (n > 1 && c[0] == 0.0) ++c, --n;
     double low = c[0], high = c[0];
@@ -111,7 +112,7 @@ inline int zeros(const double* c, int n, double* out) {
     return count;
 }
 
-// True if bounds on the series of one foot in contact exclude an event.
+// True if bounds of the series exclude every event, for one foot in contact.
 inline bool uneventful(Mode m, const Series& c, double mu) {
     if (m.feet != kLeft && m.feet != kRight) return false;
     const double *normal = c.normal[m.feet], *gap = c.gap[kBoth - m.feet];
@@ -123,7 +124,8 @@ inline bool uneventful(Mode m, const Series& c, double mu) {
     return push > 1e-6 * std::fabs(normal[0]) && open > 1e-6 * high && high < kHalfPi && (m.slip ? slide > 1e-6 * std::fabs(c.sliding[0]) : grip > 1e-6 * mu * normal[0]);
 }
 
-// First position in (0, 1] at which a polynomial that starts above zero falls below zero, not only touches it; 2 if none.
+// First position in (0, 1] where a polynomial with a positive start becomes negative (a touch is ignored); 2 if there
+// is none.
 inline double first_fall(const double* c, int n) {
     double low = c[0];
     for (int k = 1; k < n; ++k) low += std::min(c[k], 0.0);
@@ -149,7 +151,8 @@ inline double first_end(const Functions& f, double stretch, double tolerance, En
     return first;
 }
 
-// The mode that follows a state: all are tried, those of most feet first, sticking before sliding; the first counts.
+// The mode after a state. Modes with more feet are tried first, and sticking before sliding. The first valid mode is
+// used.
 inline bool choose(const Base& b, const State& s, const Ground& g, double mu, Mode& mode, double& tolerance) {
     Mode tried[10];
     int count = 0;

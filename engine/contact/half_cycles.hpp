@@ -1,5 +1,5 @@
-// Half cycles of a body on a foot that may slide, with separate initial states. In each step the ground acceleration
-// is linear. The bodies are mirrored so that rotations are positive. Forces are over the mass.
+// Half cycles of bodies on a foot that may slide, each with its own initial state. In each step the ground acceleration
+// is linear. The bodies are mirrored: rotations are positive. Forces are per unit of mass.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,8 @@ class SlidingFoot {
     SlidingFoot(double alpha, double p, double size, double friction, double gravity)
         : alpha_(alpha), size_(size), mu_(friction), g_(gravity), inertia_(size * (gravity / (p * p) - size)), whole_(inertia_ + size * size) {}
 
-    // One step; push, lift: acceleration of the ground and gravity with it, at the begin and the end of the step [m/s2].
+    // One step. push, lift: acceleration of the ground, and gravity plus vertical acceleration, at both ends of the
+    // step [m/s2].
     Tilted step(Tilted s, double h, const double (&push)[2], const double (&lift)[2], double& direction) const {
         double x = 0.0;
         for (int piece = 0; piece < kParts && x < 1.0; ++piece) {
@@ -50,7 +51,7 @@ class SlidingFoot {
 
   private:
     static constexpr int kParts = 6, kRefined = 3;
-    static constexpr double kHolds = 1e6;  // from this friction on no foot slides
+    static constexpr double kHolds = 1e6;  // no foot slides if the friction is at least this large
     struct Line {
         double begin, end;
         double at(double x) const { return begin + x * (end - begin); }
@@ -61,7 +62,7 @@ class SlidingFoot {
         double turning, sliding;
     };
 
-    // direction of sliding; zero if the foot sticks.
+    // direction: direction of sliding; zero if the foot sticks
     Rates rates(double y, double v, double push, double lift, double direction) const {
         const double sine = std::sin(alpha_ - y), cosine = std::cos(alpha_ - y);
         if (direction == 0.0) return {-size_ / whole_ * (lift * sine + push * cosine), 0.0};  // Eq. 14
@@ -71,7 +72,7 @@ class SlidingFoot {
         return {turning, ratio * across - along};
     }
 
-    // Excess of the friction demand of the foot over the available friction; direction of sliding.
+    // Difference between friction demand and available friction of the foot; sets the direction of sliding.
     double over(const Tilted& s, double push, double lift, double& direction) const {
         if (mu_ >= kHolds) return -1.0;
         const double sine = std::sin(alpha_ - s.rotation), cosine = std::cos(alpha_ - s.rotation), v2 = s.velocity * s.velocity;
@@ -81,7 +82,7 @@ class SlidingFoot {
         return std::fabs(along) - mu_ * across;
     }
 
-    // Runge and Kutta, order 4, over a fraction of the remaining step.
+    // Runge-Kutta step of order 4 over a fraction of the remaining step.
     Tilted moved(const Tilted& s, double h, const Line& push, const Line& lift, double fraction, double direction) const {
         const double half = 0.5 * h, pm = push.at(0.5 * fraction), lm = lift.at(0.5 * fraction);
         const Rates a = rates(s.rotation, s.velocity, push.begin, lift.begin, direction);

@@ -1,5 +1,6 @@
-// An impact: Newton's law by complementarity on both feet, Poisson's and Stronge's by the growth of the impulse at one place
-// (Routh), an imposed coefficient, and the shock of a foot that slides without a possible force (Painleve).
+// Impacts. Newton's law uses complementarity on both feet. Poisson's and Stronge's laws use an impulse that grows at
+// one point (Routh). There are also an imposed coefficient, and the shock of a sliding foot without a possible contact
+// force (Painleve).
 #pragma once
 #include "base.hpp"
 
@@ -8,7 +9,8 @@ namespace rocking::contact {
 constexpr double kRounding = 1e-13;
 
 struct Law {
-    double friction, bounce, imposed[3];  // mu, e, coefficients for landing left [1] and right [2]; NaN where there is none
+    // mu, e, coefficients for landing left [1] and right [2]; NaN if there is no coefficient
+    double friction, bounce, imposed[3];
     Bounce kind;
 };
 
@@ -25,7 +27,7 @@ class Impact {
         speed_ = largest_speed(b_, s_);
     }
 
-    // Result with e of each foot; true if another law than the requested one replaces it.
+    // Impact with coefficient e of each foot; stands_in becomes true if another law replaces the requested law.
     bool resolve(const double (&bounce)[3], Struck& struck, bool& stands_in) const {
         stands_in = false;
         if (law_.kind == Bounce::newton ? newton(bounce, struck, true) : grown(bounce, law_.kind, struck)) return true;
@@ -33,7 +35,7 @@ class Impact {
         return grown(bounce, Bounce::stronge, struck);
     }
 
-    // A foot slides, but no force satisfies Coulomb's law: its impulse grows until the foot sticks.
+    // A foot slides, and no force satisfies Coulomb's law: the impulse of the foot grows until the foot sticks.
     bool shock(Struck& struck) const {
         for (int foot : {kLeft, kRight}) {
             if (!(s_.touching & foot) || away_[foot] != 0.0) continue;
@@ -49,7 +51,8 @@ class Impact {
         return false;
     }
 
-    // theta_dot_after / theta_dot_before imposed on a rocking impact; false where the impulse would have to pull, or energy is gained.
+    // Imposes theta_dot_after / theta_dot_before on a rocking impact; false if the impulse would be tensile or energy
+    // would increase.
     bool imposed(int foot, double r, Struck& struck) const {
         const double j = b_.inertia, h = b_.height, d = b_.lever[foot];
         const double arm = (foot == kRight ? 1.0 : -1.0) * (1.0 - r) * (j + h * h) / (std::fabs(b_.lever[kBoth - foot]) + r * std::fabs(d));  // Eq. 4
@@ -97,7 +100,8 @@ class Impact {
         return true;
     }
 
-    // Newton's law: all combinations of feet and directions of sliding are tried. `single`: two different results count as no result.
+    // Newton's law: all combinations of feet and sliding directions are tried. `single`: false if there are two
+    // different results.
     bool newton(const double (&bounce)[3], Struck& struck, bool single) const {
         double target[3];
         for (int foot : {kLeft, kRight}) target[foot] = -bounce[foot] * away_[foot];  // Eq. 70
@@ -159,8 +163,9 @@ class Impact {
         return std::fabs(candidate.tangential) <= law_.friction * total + slack * (1.0 + law_.friction);
     }
 
-    // Poisson's or Stronge's law: at the foot that lands; where the other one would be pressed down, at the place between
-    // the feet where the plastic impact has its resultant, and if even that presses one down, plastically.
+    // Poisson's or Stronge's law at the landing foot. If this presses the other foot into the ground, the impulse acts
+    // between the feet, at the resultant of the plastic impact. If this also presses a foot into the ground, the impact
+    // is plastic.
     bool grown(const double (&bounce)[3], Bounce kind, Struck& struck) const {
         const bool falls[3] = {false, (s_.touching & kLeft) && away_[kLeft] < 0.0, (s_.touching & kRight) && away_[kRight] < 0.0};
         if (falls[kLeft] != falls[kRight]) {
@@ -180,7 +185,8 @@ class Impact {
         return dissipates(struck);
     }
 
-    // The impulse at one place grows, sliding or sticking: to the end of compression, then to that of restitution.
+    // The impulse at one point grows, with sliding or sticking, to the end of compression, then to the end of
+    // restitution.
     Struck grow(Arm r, int foot, double e, Bounce kind, bool shocked = false) const {
         const Delassus a = at(r);
         const double mu = law_.friction;
@@ -221,7 +227,7 @@ class Impact {
     double away_[3] = {}, speed_;
 };
 
-// The state after an impact with rounding taken out of velocities that are zero.
+// The state after an impact, without rounding errors in velocities that are zero.
 inline State cleaned(const Base& b, const State& s, double stop) {
     int resting = 0;
     for (int foot : {kLeft, kRight})

@@ -30,7 +30,7 @@ static void expect(bool fine, const char* message) {
 
 class Library {
   public:
-    // `places`: first coefficient, number of stretches and of terms, whether a vertical part follows.
+    // Each row of `places`: first coefficient, number of stretches, number of terms, 1 if a vertical part follows.
     Library(Line<const double> data, Table<const std::int64_t> places, Line<const double> steps) : data_(data.data(), data.data() + data.size()) {
         expect(places.shape(1) == 4 && places.shape(0) == steps.size(), "tables of motions expected");
         const auto size = static_cast<std::int64_t>(data.size());
@@ -67,7 +67,8 @@ class Library {
     }
 
   private:
-    // Numbers: j, h, b of the left and the right foot; mu, e, coefficients imposed left and right; scale, end; the state.
+    // Order of the numbers: j, h, b of the left and the right foot, mu, e, coefficients imposed left and right, scale,
+    // end, the state.
     Result one(const double* v, const std::int64_t* c, const Settings& set, double rest_speed) const {
         for (int k = 0; k < kNumbers; ++k)
             if (!(std::fabs(v[k]) <= 1e9) && k != 6 && k != 7) return {};
@@ -96,8 +97,8 @@ class Library {
     std::vector<Motion> motions_;
 };
 
-// Bodies: alpha, p, R, mu and the length of a step, one row each; push and lift at start and end of every step; the first of the
-// states (rotation, velocity, slip) is given.
+// Rows of `bodies`: alpha, p, R, mu, length of a step. push and lift: values at the start and the end of every step.
+// `states`: the first state (rotation, velocity, slip) is the input.
 static void slide(Table<const double> bodies, Block<const double> push, Block<const double> lift, Block<double> states, double gravity) {
     const std::size_t count = bodies.shape(1), steps = push.shape(0);
     expect(bodies.shape(0) == 5 && push.shape(1) == 2 && push.shape(2) == count && lift.shape(0) == steps && lift.shape(1) == 2 && lift.shape(2) == count &&

@@ -1,4 +1,4 @@
-// One history: from event to event by Taylor series whose steps end on the samples, and over stretches at rest by bounds.
+// One history: Taylor series from event to event, with steps that end at samples; bounds skip stretches at rest.
 #pragma once
 #include <vector>
 
@@ -63,7 +63,7 @@ class Run {
         : b_(base), m_(motion), law_(law), row_(row), set_(set), s_(row.start) {}
 
     Result run() {
-        s_ = cleaned(b_, s_, 1e-13 * largest_speed(b_, s_));  // corrects the rounding of the caller's sine
+        s_ = cleaned(b_, s_, 1e-13 * largest_speed(b_, s_));  // removes the rounding errors of the sine in the input
         bool falls = false;
         for (int foot : {kLeft, kRight}) falls |= (s_.touching & foot) && away(b_, s_, foot) < 0.0;
         if (falls) strike(kFlight);
@@ -85,7 +85,7 @@ class Run {
         return !(std::fabs(s_.rotation) > b_.alpha[side]) || (now() - row_.end) * b_.pace > kPatience;
     }
 
-    // Motion of the next time interval; the remaining part of a stretch is shifted.
+    // Ground motion of the next time interval; the polynomial is shifted to the remaining part of the stretch.
     Ground ground(double unit) const {
         Ground g;
         g.unit = unit, g.lift[0] = set_.gravity, g.small = 0.1 * set_.tolerance;
@@ -155,7 +155,7 @@ class Run {
         if (!shaking()) time_ = m_.count * m_.step;
     }
 
-    // The state at an instant of the step, and the friction in use there: all series side by side.
+    // State and friction usage at an instant of the step; all series are evaluated together.
     void evaluate(double at, State& s) {
         double x = 0.0, z = 0.0, turn = 0.0, u = 0.0, w = 0.0, spin = 0.0, normal = 0.0, tangential = 0.0, path = 0.0;
         for (int k = c_.n - 1; k > 0; --k) {
@@ -176,7 +176,7 @@ class Run {
         r_.sliding_distance += std::fabs(c_.unit * at * path);
     }
 
-    // Records a step: peaks, and the passage of the centre over the foot.
+    // Records a step: peaks, and the passage of the centre of mass over the foot.
     void keep(double at, const State& reached) {
         const int n = c_.n;
         const double start = now();
@@ -275,7 +275,7 @@ class Run {
         change();
     }
 
-    // A body with small velocities after an impact comes to rest, if its forces allow it.
+    // A body with small velocities after an impact comes to rest, if the forces allow rest.
     State calmed(const State& after) const {
         if (after.touching != kBoth || !(std::max(std::fabs(after.w), std::fabs(after.spin) * b_.size) <= b_.slow)) return after;
         State calm = kept(b_, after, kBoth, false);
@@ -285,7 +285,7 @@ class Run {
         return choose(b_, calm, ground(1.0 / b_.pace), law_.friction, mode, tolerance) && mode.feet == kBoth ? calm : after;
     }
 
-    // No force of a rigid body exists: the impulse of a shock, or the end.
+    // No contact force of a rigid body exists: apply the impulse of a shock, or end the history.
     void shocked() {
         if (++events_ >= set_.most_events) stop(kTooManyEvents);
         if (done_) return;
@@ -326,7 +326,7 @@ class Run {
         done_ = true, r_.status = status;
     }
 
-    // Whether a force or a moment could fall to zero under accelerations within these ranges.
+    // True if a force or a moment could become zero under accelerations within these ranges.
     bool excited(Range push, Range lift) const {
         double low = row_.scale * push.low, high = row_.scale * push.high;
         if (low > high) std::swap(low, high);
@@ -337,7 +337,7 @@ class Run {
         return !(min_weight * right + low * h > 0.0 && min_weight * left - high * h > 0.0 && mu * min_weight - high > 0.0 && mu * min_weight + low > 0.0);  // Eq. 69
     }
 
-    // Skips stretches that cannot move the body; returns true if there were any.
+    // Skips stretches that cannot move the body; true if stretches were skipped.
     bool rest() {
         const std::int64_t from = stretch_;
         const std::int64_t last = std::min<std::int64_t>(m_.count, static_cast<std::int64_t>(row_.end / m_.step + 1e-9));

@@ -1,4 +1,5 @@
-// One mode over a short time as power series of the time, which runs from 0 to 1: motion, forces, heights of the feet.
+// Motion, forces and heights of the feet in one mode, as power series of the time. The time interval is scaled to 0 ...
+// 1.
 #pragma once
 #include "base.hpp"
 
@@ -6,7 +7,7 @@ namespace rocking::contact {
 
 constexpr int kMost = 24, kTerms = kMost + 1, kGround = 8;
 
-// a_x and g + a_z over a unit of time, and how small the terms must be that a series leaves out.
+// a_x and g + a_z over a unit of time; small: size below which the terms of a series are negligible
 struct Ground {
     double push[kGround] = {}, lift[kGround] = {}, unit = 0.0, small = 1e-16;
     int terms = 1;
@@ -15,7 +16,7 @@ struct Ground {
 
 struct Series {
     double unit, stiff;
-    int n;            // terms
+    int n;            // number of terms
     bool converged;   // true if the truncation error is below rounding
     double rotation[kTerms], x[kTerms], rise[kTerms], tangential[kTerms], sliding[kTerms], normal[3][kTerms], gap[3][kTerms];
 };
@@ -31,7 +32,7 @@ inline double slope(const double* c, int n, double at) {
     return total;
 }
 
-// Position from an acceleration, with its value and rate at the start.
+// Series of a position from its acceleration, with the value and the rate at the start.
 inline void twice(const double* a, int n, double start, double rate, double unit, double* result) {
     result[0] = start, result[1] = rate * unit;
     for (int k = 2; k < n; ++k) result[k] = a[k - 2] * unit * unit / (k * (k - 1.0));
@@ -123,7 +124,7 @@ inline void pivoting(const Base& b, const State& s, Mode m, const Ground& g, dou
             break;
         }
     }
-    const int n = c.n = k + 2;  // rotation up to k + 1, the arm up to k
+    const int n = c.n = k + 2;  // the rotation has coefficients 0 to k + 1, the arm has 0 to k
     x[k + 1] = z[k + 1] = 0.0;
     double* normal = c.normal[m.feet];
     double a[kTerms];

@@ -1,4 +1,4 @@
-// A body on the vertices of its hull, the ground under it, and their quantities in the equations.
+// A body represented by the vertices of its convex hull, the ground, and the quantities of the equations of motion.
 #pragma once
 #include <cstdint>
 #include <limits>
@@ -27,12 +27,13 @@ inline Vec unit(Vec a) {
 struct Body {
     double mass = 0.0, size = 0.0;
     Mat inertia, inverse;
-    std::vector<Vec> points;           // vertices, from the centre of mass
-    std::vector<Mat> soft, stiff;      // acceleration of each vertex by a force there, and its inverse
-    std::vector<Vec> facets;           // outward normals over distances from the centre
-    List poses, first, beside;         // by facet: the final pose, the neighbours
-    List first_corner, corners;         // of each facet
-    Positions ked, calibrated;         // k of a landing on the base, by two models
+    std::vector<Vec> points;           // vertices, relative to the centre of mass
+    // acceleration of every vertex per unit force at this vertex, and the inverse matrix
+    std::vector<Mat> soft, stiff;
+    std::vector<Vec> facets;           // outward unit normals / distance of the facet from the centre of mass
+    List poses, first, beside;         // by facet: final pose, index of the first neighbour; list of the neighbours
+    List first_corner, corners;         // by facet: index of the first corner; list of the corners
+    Positions ked, calibrated;         // impulse position k of a landing on the base, for two models
     bool usable = false;
 
     void prepare() {
@@ -49,7 +50,7 @@ struct Body {
         }
     }
 
-    // Acceleration of a vertex by a force at a point.
+    // Acceleration of a vertex per unit force at another point.
     Mat yielding(int i, Vec by) const {
         const Vec at = points[i];
         const auto answer = [&](Vec f) { return 1.0 / mass * f + cross(inverse * cross(by, f), at); };
@@ -57,7 +58,7 @@ struct Body {
         return {{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}};
     }
 
-    // Facet below the centre of mass, by a search from facet to neighbour.
+    // Facet below the centre of mass, found by moving from a facet to a neighbour.
     int under(Vec up, int from) const {
         for (double lowest = dot(facets[from], up);;) {
             const int before = from;
@@ -71,12 +72,12 @@ struct Body {
 };
 
 struct State {
-    Vec place;              // of the centre, axes of the ground
-    double q[4] = {1.0};    // attitude
-    Vec velocity, spin;     // axes of the ground, and of the body
+    Vec place;              // position of the centre of mass, axes of the ground
+    double q[4] = {1.0};    // attitude (quaternion)
+    Vec velocity, spin;     // velocity in axes of the ground, angular velocity in axes of the body
 };
 
-// Axes of the ground in those of the body.
+// Axes of the ground, expressed in axes of the body.
 inline Mat frame(const double* q) {
     const double s = q[0], x = q[1], y = q[2], z = q[3];
     return {{s * s + x * x - y * y - z * z, 2.0 * (x * y - s * z), 2.0 * (x * z + s * y)},  // Eq. 79
@@ -90,13 +91,13 @@ inline void normalise(double* q) {
 }
 
 struct Motion {
-    const double* times = nullptr;  // ends of the stretches
+    const double* times = nullptr;  // end times of the stretches
     const double* rows = nullptr;   // accelerations by stretch, power and axis
     std::int64_t count = 0;
     int degree = 0;
 };
 
-// Gravity minus the acceleration of the ground, in axes of the plane, by powers of the fraction of a step.
+// Gravity minus the acceleration of the ground, in axes of the plane, as polynomial of the fraction of a step.
 struct Field {
     Vec power[kPowers];
     int degree = 0;
@@ -110,7 +111,7 @@ struct Field {
 struct Ground {
     const Motion* motion = nullptr;
     double scale = 1.0, gravity = 0.0;
-    Mat level = diagonal(1.0);      // to axes of the plane
+    Mat level = diagonal(1.0);      // rotation to the axes of the plane
     double shelf[2] = {kInfinite, kInfinite};
     Vec weight;
 
@@ -136,8 +137,8 @@ struct Ground {
         field.degree = n;
     }
 
-    // The field over several stretches of lines: the cubic with the moments of the motion, on which the end of a step depends up to
-    // the fourth order. Returns its distance from the samples within.
+    // The field over several linear stretches, as a cubic with the moments of the motion. Up to the fourth order, the
+    // end of a step depends on these moments only. Returns the largest distance from the samples in the step.
     double across(std::int64_t stretch, double start, double span, Field& result) const {
         const double end = start + span;
         const std::int64_t first = stretch;
@@ -157,7 +158,7 @@ struct Ground {
             if (to < 1.0) shares[inner] = to, at[inner++] = base + to * rise;
             from = to;
         }
-        static constexpr double inverse[4][4] = {  // of Hilbert's matrix
+        static constexpr double inverse[4][4] = {  // inverse of Hilbert's matrix
             {16.0, -120.0, 240.0, -140.0}, {-120.0, 1200.0, -2700.0, 1680.0}, {240.0, -2700.0, 6480.0, -4200.0}, {-140.0, 1680.0, -4200.0, 2800.0}};
         Vec powers[4];
         for (int k = 0; k < 4; ++k)

@@ -1,4 +1,5 @@
-// Candidates for a contact, solved on demand: sticking before sliding, larger faces before smaller ones, flight last.
+// Candidates for the contact set, solved when needed: sticking before sliding, larger faces before smaller faces,
+// flight last.
 #pragma once
 #include <memory>
 #include <optional>
@@ -7,7 +8,7 @@
 
 namespace rocking::hull {
 
-using Moving = Few<Placed>;  // vertices that slide, and their directions in body axes
+using Moving = Few<Placed>;  // sliding vertices and their directions in body axes
 inline const Vec* moving_of(const Moving& moving, int i) {
     for (const auto& entry : moving)
         if (entry.first == i) return &entry.second;
@@ -16,7 +17,8 @@ inline const Vec* moving_of(const Moving& moving, int i) {
 
 class Candidates {
   public:
-    // Begins a problem, which must remain valid with its lists. limit: violation of a law above which a candidate is rejected.
+    // Starts a problem; it must exist as long as its lists are used. limit: a candidate with a larger violation of a
+    // law is rejected.
     void begin(const Problem& p, const Points& touching, const Points& near, const Moving& moving, double still, double limit) {
         problem_ = &p, near_ = &near, moving_ = &moving, still_ = still, limit_ = limit, next_ = 0;
         faces_.clear(), made_.clear(), holding_.clear(), table_.reset();
@@ -27,7 +29,7 @@ class Candidates {
         made_.reserve(ways_.size() + 1);
     }
 
-    // The first one with a violation of at most `slack` that `fits`; null without one.
+    // The first candidate with a violation of at most `slack` for which `fits` is true; null if there is none.
     template <class Fits>
     const Solution* first(double slack, Fits fits) {
         for (std::size_t k = 0; at(k); ++k) {
@@ -38,10 +40,10 @@ class Candidates {
         return nullptr;
     }
 
-    // Null after the last one.
+    // The next candidate; null after the last candidate.
     const Solution* operator[](std::size_t k) { return at(k) ? &solution(made_[k]) : nullptr; }
 
-    // Includes invalid candidates, from the start.
+    // All candidates from the start, invalid candidates included.
     void all() { limit_ = kInfinite, next_ = 0, made_.clear(); }
 
   private:
@@ -58,12 +60,12 @@ class Candidates {
     };
     struct Held {
         bool known = false, exists = false, few = false;
-        Trial trial;                    // of up to three vertices
+        Trial trial;                    // for up to three vertices
         std::unique_ptr<Solution> solution;
     };
 
     void order() {
-        Few<std::size_t> from(3);  // by rank: where its candidates begin
+        Few<std::size_t> from(3);  // by rank: index of the first candidate
         every_way([&](const Way& w) {
             if (from.size() < w.rank + 2) from.resize(w.rank + 2);
             ++from[w.rank + 1];
@@ -80,11 +82,12 @@ class Candidates {
             std::size_t n = 0;
             for (int i : members) n += !moving_of(*moving_, i);
             const auto add = [&](int stuck, std::size_t sticks) {
-                // a fully sliding facet comes before edges and single vertices
+                // a facet on which all vertices slide precedes edges and single vertices
                 if (problem_->friction < kInfinite || sticks == members.size()) take(Way{sticks == n ? 0 : members.size() > 2 && !sticks ? 1 : n - sticks + 1, static_cast<int>(f), stuck});
             };
             if (n == members.size() || n < 2) add(kAll, n);
-            if (n > 1 && members.size() <= kCorners)  // two sticking vertices of a facet make it rest; of an edge that leaves single ones
+            // two sticking vertices of a facet make the facet stick; for an edge, single vertices remain as candidates
+            if (n > 1 && members.size() <= kCorners)
                 for (int i : members)
                     if (!moving_of(*moving_, i)) add(i, 1);
             if (n > 0) add(kNobody, 0);
@@ -142,7 +145,7 @@ class Candidates {
         return t;
     }
 
-    // One free member of a face sticks, or no free member.
+    // Candidates in which one free member of a face sticks, or no free member.
     Verdict slide(const Way& way, const Held& held, Trial& t) const {
         const Points& members = faces_[way.face];
         t = begun(members);
@@ -174,7 +177,7 @@ class Candidates {
         return s;
     }
 
-    // A face; its vertices stick unless they already slide.
+    // Adds a face; its vertices stick, except the vertices that already slide.
     const Held& hold(int face) {
         Held& held = holding_[face];
         if (held.known) return held;

@@ -1,4 +1,4 @@
-// Forces or impulses on a set of touching vertices: one problem for accelerations and for velocities.
+// Forces or impulses on a set of touching vertices. Accelerations and velocities lead to the same problem.
 #pragma once
 #include "body.hpp"
 
@@ -6,17 +6,17 @@ namespace rocking::hull {
 
 constexpr double kSingular = 1e-12, kStraight = 1e-12;
 constexpr int kTurns = 60, kNewton = 20, kTries = 6;
-constexpr double kNearly = 1e-2;  // change of directions below which Newton's method takes over
-constexpr double kSwing = 1e-7;  // by which a direction is turned for the slope
+constexpr double kNearly = 1e-2;  // if the directions change by less, Newton's method starts
+constexpr double kSwing = 1e-7;  // angle by which a direction is turned to compute a derivative
 constexpr int kBegin = 6;  // iterations before Newton's method for a facet with many corners
-constexpr std::size_t kCorners = 8;  // of a facet with more no single one sticks
+constexpr std::size_t kCorners = 8;  // no single vertex sticks on a facet with more corners
 
 struct Contact {
     Points members, stuck;
     bool operator==(const Contact& o) const { return members == o.members && stuck == o.stuck; }
 };
 
-// Index of a member among the members, searched first beyond `from`: parallel lists continue in the same order.
+// Index of a member in the list of members. The search starts at `from`, since parallel lists have the same order.
 inline std::size_t slot_of(const Points& members, int i, std::size_t from) {
     for (std::size_t k = from; k < members.size(); ++k)
         if (members[k] == i) return k;
@@ -30,14 +30,16 @@ struct Placed {
     Vec second;
 };
 
-// Motion without contact forces, and points of action of the forces.
+// Motion without contact forces, and points at which the forces act.
 struct Problem {
     const Body* body = nullptr;
     Mat axes;
     Vec linear, angular, spin;
     double friction = 0.0;
-    bool forces = false;                            // accelerations, not velocities: with the centripetal part
-    Few<Placed> places;                             // where the impulse of a vertex acts, if not at the vertex
+    // true for accelerations, which include the centripetal part; false for velocities
+    bool forces = false;
+    // points where the impulses of vertices act, if these points are not the vertices
+    Few<Placed> places;
 
     Vec bias(int i) const { return cross(spin, cross(spin, body->points[i])); }
     Vec rate(int i, Vec a, Vec alpha) const {
@@ -57,8 +59,9 @@ struct Solution {
     Contact contact;
     Vec linear, angular;
     Numbers normals;
-    double shape[3];  // of the normal forces of more than three
-    Vecs directions, pulls;  // of those that slide, of those that stick; zero for the others
+    double shape[3];  // coefficients of the distribution of more than three normal forces
+    // directions of the sliding members, tangential forces of the sticking members; zero for the others
+    Vecs directions, pulls;
     bool exists = false;
 };
 
@@ -66,7 +69,7 @@ struct Wrench {
     Vec f, m;
 };
 
-// Gauss without exchange; false where a pivot is not positive, so that no force answers a motion.
+// Gauss elimination without row exchange; false if a pivot is not positive, since then no force produces the motion.
 template <int n>
 bool eliminated(double (&t)[n][n + 1], const double* thresholds, double* answer) {
     for (int k = 0; k < n; ++k) {
@@ -141,7 +144,7 @@ inline void share_pulls(const Problem& p, const double* parts, Solution& s) {
     for (int k = 0; k < n; ++k) s.pulls[slot(stuck[k])] = turning[k];
 }
 
-template <int size>  // of the system
+template <int size>  // size: number of equations of the system
 bool linear_of(const Problem& p, const Points& carrying, Solution& s) {
     const Body& body = *p.body;
     const Points &members = s.contact.members, &stuck = s.contact.stuck;
@@ -169,7 +172,8 @@ bool linear_of(const Problem& p, const Points& carrying, Solution& s) {
     }
     if (size > 2 && rest) {
         int at = shapes;
-        Vec acts, moves, known_there;  // means over those that stick: the matrix is symmetric where the forces are at the vertices
+        // means over the sticking vertices; the matrix is symmetric if the forces act at the vertices
+        Vec acts, moves, known_there;
         const double share = 1.0 / rest;
         for (int i : stuck) {
             acts = acts + share * p.place(i), moves = moves + share * body.points[i];
@@ -202,7 +206,7 @@ bool linear_of(const Problem& p, const Points& carrying, Solution& s) {
     return true;
 }
 
-// Solution with forces at the loaded slots, also tensile ones, that keeps the vertices of s.contact closed; carrying: slots of members.
+// Solution with forces at the `carrying` members, possibly tensile, that keeps the vertices of s.contact on the ground.
 inline bool linear(const Problem& p, const Points& carrying, Solution& s) {
     const std::size_t shapes = std::min<std::size_t>(carrying.size(), 3), rest = s.contact.stuck.size();
     switch (shapes + (rest > 0 ? 2 : 0) + (rest > 1 ? 1 : 0)) {
@@ -225,7 +229,8 @@ inline bool solve(const Problem& p, Solution& s) {
     for (std::size_t k = 0; k < carrying.size(); ++k) carrying[k] = static_cast<int>(k);
     const Points all = carrying;
     Points next;
-    for (int turn = 0; all.size() > kCorners && turn < kNewton; ++turn) {  // those that a linear pressure pushes, until it is theirs
+    // iterates to the vertices at which a linear pressure is positive
+    for (int turn = 0; all.size() > kCorners && turn < kNewton; ++turn) {
         if (!(s.exists = linear(p, carrying, s))) break;
         next.clear();
         for (int k : all) {
@@ -252,7 +257,8 @@ inline bool solve(const Problem& p, Solution& s) {
     }
 }
 
-// Gauss with exchange of rows; false where the table is singular. The last column is the right-hand side, and the answer.
+// Gauss elimination with row exchange; false if the matrix is singular. The last column: right-hand side, then the
+// solution.
 inline bool solved(int n, double t[][kCorners + 1]) {
     for (int k = 0; k < n; ++k) {
         int best = k;
@@ -281,13 +287,13 @@ inline Flat unit(Flat a) {
 // Contact for the directions of sliding.
 class Rubbing {
   public:
-    Few<Flat> ways;  // by member, in axes of the ground
+    Few<Flat> ways;  // directions by member, in axes of the ground
 
     Rubbing(const Problem& p, Solution& s) : p_(p), s_(s) {
         for (const Vec& d : s.directions) ways.push_back({dot(d, p.axes.a), dot(d, p.axes.b)});
     }
 
-    // Normal forces and rates for `ways`.
+    // Computes normal forces and rates for the directions `ways`.
     bool act() {
         for (std::size_t k = 0; k < ways.size(); ++k) s_.directions[k] = p_.ground(ways[k].x, ways[k].y);
         return solve(p_, s_);
@@ -300,12 +306,13 @@ class Rubbing {
     Solution& s_;
 };
 
-// Turns the directions of vertices that start to slide into those of their accelerations (Newton).
+// Newton's method: rotates the directions of vertices that start to slide to the directions of their accelerations.
 inline bool turned(const Points& free, const Numbers& soft, Rubbing& rub) {
     const int n = static_cast<int>(free.size());
     Flat from[kCorners];
     double along[kCorners], r[kCorners], other[kCorners], table[kCorners][kCorners + 1], size = 0.0;
-    const auto across = [&](double* r) {  // accelerations across the directions, over the most that friction moves
+    // accelerations perpendicular to the directions, over the largest acceleration that friction causes
+    const auto across = [&](double* r) {
         if (!rub.act()) return false;
         size = 0.0;
         for (int j = 0; j < n; ++j) {
@@ -351,11 +358,13 @@ inline bool turned(const Points& free, const Numbers& soft, Rubbing& rub) {
     return false;
 }
 
-// The same for a facet of many corners, which starts to slide as a rigid body does: Newton for two accelerations and a turning.
+// The same for a facet with many corners that starts to slide as a rigid body. Unknowns: two accelerations and a
+// rotation.
 inline bool turned_whole(const Problem& p, const Points& free, double still, Solution& s) {
     const Points& members = s.contact.members;
     const Vecs begun = s.directions;
-    const auto follow = [&](const double* u) {  // directions, and the motion of the body with them; lengths over the size of the body
+    // directions, and the motion of the body for these directions; lengths are over the size of the body
+    const auto follow = [&](const double* u) {
         for (int k : free) {
             const Vec r = p.body->points[members[k]], turn = u[2] / p.body->size * cross(p.axes.c, r);
             Vec rate = p.ground(u[0], u[1]) + turn;
@@ -396,11 +405,12 @@ inline bool turned_whole(const Problem& p, const Points& free, double still, Sol
         }
         std::copy(to, to + 3, u);
     }
-    return size_of(r) <= greater(still, 1e-9 * size_of(u));  // accelerations below `still` have no direction of their own
+    return size_of(r) <= greater(still, 1e-9 * size_of(u));  // accelerations below `still` have no direction
 }
 
-// The same with the directions in which free vertices start to slide, by iteration. s.directions: of those that slide
-// already; still: rate below which friction alone has the direction; pulls: of the sticking members, opposite to which they begin.
+// Solves the contact and iterates the directions in which free vertices start to slide. s.directions: directions of the
+// sliding vertices. still: at lower rates friction alone sets the direction. pulls: opposite to the first directions of
+// the free vertices.
 inline bool sliding(const Problem& p, double still, const Vecs& pulls, Solution& s) {
     const Points& members = s.contact.members;
     Points free;
@@ -441,7 +451,7 @@ inline bool sliding(const Problem& p, double still, const Vecs& pulls, Solution&
             if (turned(free, soft, rub)) return true;
             rub.ways = reached, nearly = 0.0;
         }
-        // every third turn goes where the last two, as a geometric series, lead to (Aitken)
+        // every third iteration extrapolates the last two changes as a geometric series (Aitken)
         const double ratio = turn % 3 == 2 && square > 0.0 ? along / square : 0.0;
         const double further = std::fabs(ratio) < 0.98 ? ratio / (1.0 - ratio) : 0.0;
         for (std::size_t j = 0; j < n; ++j)
@@ -452,7 +462,7 @@ inline bool sliding(const Problem& p, double still, const Vecs& pulls, Solution&
     return s.exists = n > 2 && n <= kCorners && turned(free, soft, rub);
 }
 
-// The vertices of the convex polygon of points on the ground, in order (Andrew's monotone chain).
+// The vertices of the convex hull of points on the ground, in order (Andrew's monotone chain).
 inline Points outline(const Problem& p, const Points& touching) {
     struct At {
         double x, y;
@@ -483,8 +493,8 @@ inline Points outline(const Problem& p, const Points& touching) {
     return points;
 }
 
-// Possible contacts of touching vertices: all, the edges of their border, single ones. staying: vertices that do not leave; a chord with
-// vertices beyond it is not an edge.
+// Adds the possible contact sets: all touching vertices, edges of their border, single vertices. staying: vertices that
+// do not leave. A chord with vertices beyond it is not an edge.
 inline void add_faces(const Problem& p, const Points& touching, const Points& staying, std::vector<Points>& faces) {
     const Points border = outline(p, touching);
     const std::size_t n = border.size();
@@ -508,13 +518,13 @@ inline std::vector<Points> faces(const Problem& p, const Points& touching) {
 // True if no gap closes.
 inline bool clear(const Problem& p, const Solution& s, const Points& touching, double slack) {
     const Points& members = s.contact.members;
-    if (members.size() > 2 && members.size() == touching.size()) return true;  // all of them stay
+    if (members.size() > 2 && members.size() == touching.size()) return true;  // all touching vertices stay
     for (int i : touching)
         if (dot(p.axes.c, p.rate(i, s.linear, s.angular)) < -slack && !has(members, i)) return false;
     return true;
 }
 
-// Largest violation of a law, over the mass: the smallest slack with which the solution is valid.
+// Largest violation of a law, over the mass; with this or a larger slack the solution is valid.
 inline double excess(const Problem& p, const Solution& s, const Points& touching) {
     const double light = 1.0 / p.body->mass, mu = p.friction;
     const Points& members = s.contact.members;
@@ -523,7 +533,7 @@ inline double excess(const Problem& p, const Solution& s, const Points& touching
         most = greater(most, -light * s.normals[k]);
         if (mu < kInfinite && has(s.contact.stuck, members[k])) most = greater(most, light / (1.0 + mu) * (norm(s.pulls[k]) - mu * s.normals[k]));
     }
-    if (members.size() > 2 && members.size() == touching.size()) return most;  // all of them stay
+    if (members.size() > 2 && members.size() == touching.size()) return most;  // all touching vertices stay
     for (int i : touching)
         if (!has(members, i)) most = greater(most, -dot(p.axes.c, p.rate(i, s.linear, s.angular)));
     return most;  // Eq. 251

@@ -1,4 +1,4 @@
-// Short lists with up to eight items inside: no heap for most contacts.
+// Short lists that store up to eight items without heap memory, which is sufficient for most contacts.
 #pragma once
 #include <algorithm>
 #include <cstddef>

@@ -1,5 +1,5 @@
-// The motion while a contact lasts: accelerations, and steps of the fifth order of Dormand and Prince (1980). One vertex
-// that sticks or slides, an edge that sticks, and up to three vertices that all slide have closed forms; every other contact is a small linear system.
+// The motion during a contact: accelerations, and steps of fifth order by Dormand and Prince (1980). Closed forms exist
+// for one vertex, a sticking edge, and up to three sliding vertices. Every other contact is a small linear system.
 #pragma once
 #include <cstring>
 
@@ -9,14 +9,14 @@ namespace rocking::hull {
 
 struct Mode {
     Contact contact;
-    Vecs starts;          // by member: direction in which it starts to slide, axes of the ground
+    Vecs starts;          // by member: direction in which the member starts to slide, axes of the ground
     Few<char> starting;
-    bool pulled = false;  // true if no contact satisfies all laws, and this one replaces it
+    bool pulled = false;  // true if no contact set satisfies all laws; this contact is a replacement
     bool stuck(std::size_t k) const { return has(contact.stuck, contact.members[k]); }
     bool resting() const { return contact.members.size() > 2 && contact.stuck.size() == contact.members.size(); }
 };
 
-struct Rates {  // of a state, in its order
+struct Rates {  // time derivatives of a state, in the order of the state
     Vec place;
     double q[4];
     Vec velocity, spin;
@@ -26,7 +26,7 @@ static_assert(sizeof(State) == kNumbersOfState * sizeof(double) && sizeof(Rates)
 
 struct Forces {
     bool found = true;
-    Numbers normals, pulls;  // by member
+    Numbers normals, pulls;  // by member: normal and tangential forces
 };
 
 inline Vec point_velocity(const Body& b, const State& s, const Mat& axes, int i) { return s.velocity + axes * cross(s.spin, b.points[i]); }
@@ -50,7 +50,7 @@ class Flow {
         solution_.contact = c, known_ = false;
     }
 
-    // f: output of the forces, optional.
+    // f: optional output of the forces.
     void rates(const State& s, Vec field, Rates& r, Forces* f, Mat* kept = nullptr) {
         const Mat axes = frame(s.q);
         if (kept) *kept = axes;
@@ -69,13 +69,13 @@ class Flow {
 
     static constexpr int kSamples = 4;
     static constexpr double nodes[kSamples] = {0.0, 0.3, 0.8, 1.0};
-    State samples[kSamples];  // at the start, two stages and the end
+    State samples[kSamples];  // states at the start, at two stages and at the end
     Forces forces[kSamples];
     Mat axes[kSamples];
     double error = 0.0;
     bool found() const { return found_; }
 
-    // Weights of the stages; the last row is the error.
+    // weights of the stages; the last row gives the error estimate
     static constexpr double weights[8][7] = {{},
                                              {1.0 / 5.0},
                                              {3.0 / 40.0, 9.0 / 40.0},
@@ -85,11 +85,11 @@ class Flow {
                                              {35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0},
                                              {71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0}};
 
-    // Advances by a part of a step.
+    // Advances by a fraction of a step.
     const State& step(const State& state, const Field& field, double span, double fraction, double pace) {
         const double h = fraction * span;
         found_ = true;
-        // the first stage is known from a longer step from the same state, or from the last one
+        // the first stage is known from a longer step from the same state, or from the previous step
         bool first = known_ && std::memcmp(&samples[0], &state, sizeof state) == 0 && std::memcmp(&first_, &field.power[0], sizeof first_) == 0;
         if (!first && known_ && std::memcmp(&samples[3], &state, sizeof state) == 0 && largest(last_ - field.power[0]) <= 1e-13 * largest(last_)) {
             rates_[0] = rates_[6], samples[0] = state, forces[0] = forces[3], axes[0] = axes[3];
@@ -116,7 +116,7 @@ class Flow {
         return samples[3];
     }
 
-    // Keeps the motion over the last complete step, for `along`.
+    // Stores the motion over the last complete step for `along`.
     void keep(double span) { whole_ = span, kept_ = false; }
     void interpolate() {
         if (kept_) return;
@@ -133,7 +133,7 @@ class Flow {
         course_[4] = moved(none, rates_, weight, 7, span);
     }
 
-    // Motion at a fraction of the last step, to the fourth order (Hairer, Norsett & Wanner 1993, II.6).
+    // Motion at a fraction of the last step, of fourth order (Hairer, Norsett & Wanner 1993, II.6).
     State along(double fraction) {
         interpolate();
         const double left = 1.0 - fraction;
@@ -143,7 +143,7 @@ class Flow {
         return result;
     }
 
-    // Height of a point at this time.
+    // Height of a point at a fraction of the step.
     double height(double fraction, Vec point) {
         interpolate();
         const double left = 1.0 - fraction;
@@ -157,7 +157,7 @@ class Flow {
         return mixed(&c[0].place.z, &c[1].place.z, &c[2].place.z, &c[3].place.z, &c[4].place.z) + dot(frame(q).c, point) / size;
     }
 
-    // Moves the end of the step slightly.
+    // Changes the end time of the step by a small amount.
     void nudge(double time) {
         static constexpr double unity = 1.0;
         samples[3] = moved(samples[3], rates_ + 6, &unity, 1, time);
@@ -179,7 +179,7 @@ class Flow {
 
     enum Kind { kFlight, kStuckVertex, kEdge, kSliding, kAny };
 
-    // A state plus the rates of the first n stages.
+    // State plus the increments of the first n stages.
     template <int n>
     State moved(const State& s, double h) const {
         double c[n], total[kNumbersOfState];
@@ -235,7 +235,7 @@ class Flow {
         return true;
     }
 
-    // About an edge at rest only the turning along it is open; each end has the force across it that the moments ask for.
+    // An edge at rest can only rotate about itself. The moments determine the force across the edge at both ends.
     void edge(const State& s, const Mat& axes, Vec& linear, Vec& angular, Forces* f) const {
         const Vec e = hinge_.along, w = s.spin;
         const Vec gyro = cross(w, b_.inertia * w), field = linear;
@@ -251,13 +251,13 @@ class Flow {
         for (int k = 0; k < 2; ++k) f->pulls[k] = std::sqrt(side[k] * side[k] + by[k] * total * by[k] * total);
     }
 
-    // Up to three vertices that all slide: Eq. 252 for their normal forces.
+    // Up to three vertices that all slide: solves Eq. 252 for their normal forces.
     template <int n>
     bool sliding(const State& s, const Mat& axes, Vec& linear, Vec& angular, Forces* f) const {
         const int* members = mode_->contact.members.begin();
         const Vec up = axes.c, w = s.spin;
         const double light = 1.0 / b_.mass, lifts = dot(up, linear), swing = dot(up, w), square = dot(w, w);
-        Vec push[n], moment[n], lever[n];  // moments of the forces, angular accelerations by unit normal forces
+        Vec push[n], moment[n], lever[n];  // moments of the forces, and angular accelerations per unit normal force
         double t[n][n + 1], threshold[n];
         for (int k = 0; k < n; ++k) {
             const Vec r = b_.points[members[k]], arm = cross(r, up);

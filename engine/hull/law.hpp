@@ -1,4 +1,4 @@
-// Impulse position of a landing: between the old support and the landing point.
+// Impulse position of a landing, on the line from the old support to the landing point.
 #pragma once
 #include "body.hpp"
 
@@ -11,13 +11,14 @@ struct Law {
     int code = kHousner, base = 0;
     double coefficient = 0.0;
 
-    // k of a step within the base, up to 1 where no coefficient states a larger loss; 1 of every other one.
+    // Position k of a step within the base, at most 1 unless a coefficient states a larger loss; 1 for other steps.
     double at(const Body& b, Vec old, Vec now) const {
         const double height = 1.0 / norm(b.facets[base]);
         const Vec down = height * b.facets[base], step = now - old;
         if (code == kHousner || height - dot(down, old) > kFlat * b.size || height - dot(down, now) > kFlat * b.size) return 1.0;
         if (code == kPosition) return coefficient;
-        if (code == kCoefficient) return greater(by_coefficient(b, step, down, height), 0.0);  // a stated loss may be larger than Housner's
+        // a stated energy loss may be larger than that of Housner
+        if (code == kCoefficient) return greater(by_coefficient(b, step, down, height), 0.0);
         if (code == kCalibrated) return greater(b.calibrated.at(step), 0.0);
         return lesser(greater(b.ked.at(step), 0.0), 1.0);
     }
@@ -41,7 +42,7 @@ struct Law {
     }
 };
 
-// Nearest point of a vertex, an edge or a facet (by its border) to another point.
+// Nearest point of a vertex, an edge or the border of a facet to another point.
 inline Vec nearest(const Body& b, const Points& stood, Vec to) {
     const std::size_t n = stood.size();
     Vec best = b.points[stood[0]];

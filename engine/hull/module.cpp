@@ -30,7 +30,7 @@ static void expect(bool fine, const char* message) {
 static Vec vec(const double* v) { return {v[0], v[1], v[2]}; }
 static Mat mat(const double* v) { return {vec(v), vec(v + 3), vec(v + 6)}; }
 
-// Lists of numbers below a limit, one after another: where each starts, the numbers.
+// Several lists of numbers in one array: index of the first number of each list, and the numbers.
 static void lists(Line<const Whole> first, Line<const Whole> members, std::size_t count, std::size_t limit, List& starts, List& all) {
     expect(first.size() == count + 1 && first.data()[0] == 0 && first.data()[count] == static_cast<Whole>(members.size()), "lists of a body expected");
     for (std::size_t k = 0; k < count; ++k) expect(first.data()[k] <= first.data()[k + 1], "lists of a body expected in order");
@@ -43,7 +43,8 @@ class Library {
     Library() = default;
     Library(const Library&) = delete;
 
-    // ked, calibrated: intervals of k of landings on the base, by two models; none where they are not needed.
+    // ked, calibrated: intervals of the position k of landings on the base, for two models; empty if they are not
+    // needed.
     void add_body(double mass, Table<const double> inertia, Table<const double> vertices, Table<const double> facets, Line<const Whole> poses,
                   Line<const Whole> first, Line<const Whole> beside, Line<const Whole> first_corner, Line<const Whole> corners, Table<const double> ked, Table<const double> calibrated) {
         expect(inertia.shape(0) == 3 && inertia.shape(1) == 3 && vertices.shape(1) == 3 && facets.shape(1) == 3 && vertices.shape(0) > 3 &&
@@ -99,7 +100,7 @@ class Library {
         for (std::thread& worker : crew) worker.join();
     }
 
-    // One history with steps that never cross samples: its results, nodes and impacts, their contacts, and other data for a response.
+    // One history whose steps never pass a sample: results, nodes, impacts, contacts, and other data of a response.
     nb::tuple trace(Table<const double> numbers, Table<const Whole> choices, Table<double> results, Table<Whole> counts, double rest_speed, double tolerance, Whole most_events) const {
         expect(numbers.shape(0) == 1 && numbers.shape(1) == kNumbers && choices.shape(0) == 1 && choices.shape(1) == kChoices && results.shape(0) == 1 && results.shape(1) == kResults &&
                    counts.shape(0) == 1 && counts.shape(1) == kCounts,
@@ -121,8 +122,8 @@ class Library {
         return {kept, {values.size() / columns, columns}, owner};
     }
 
-    // Numbers: coefficient or position, scale, horizon, friction; axes of the plane; half sizes of the shelf; attitude, position, velocity,
-    // spin; gravity. Choices: body, motion, law, initial facet.
+    // Order of the numbers: coefficient or position, scale, horizon, friction, axes of the plane, half sizes of the
+    // shelf, attitude, position, velocity, spin, gravity. Order of the choices: body, motion, law, initial facet.
     Result one(const double* v, const Whole* c, const Settings& set, Trace* trace = nullptr) const {
         for (int k = 0; k < kNumbers; ++k)
             if (!(std::fabs(v[k]) <= 1e9) && !(v[k] == kInfinite && (k == 3 || k == 13 || k == 14))) return {};

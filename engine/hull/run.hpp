@@ -1,4 +1,4 @@
-// One history: steps, events to rounding, changes of contact, impacts, rest.
+// One history: steps, events located to rounding, changes of contact, impacts, rest.
 #pragma once
 #include <array>
 
@@ -8,12 +8,12 @@
 
 namespace rocking::hull {
 
-// gaps over the size: of vertices that land together, and at which one lands
+// gaps / size: below kClosed vertices land together, below kGrazed a vertex lands
 constexpr double kClosed = 1e-11, kGrazed = 1e-14, kForce = 1e-11;
-// speeds over sqrt(g size): for the end of sliding, for a possible sticking, for a constant direction of sliding
+// speeds / sqrt(g size): end of sliding, possible sticking, constant direction of sliding
 constexpr double kSlip = 5e-6, kSlides = 1e-4, kStrikes = 5e-10;
 constexpr std::array<double, 4> kLadder{1e-11, 1e-9, 1e-7, 1e-5};
-constexpr double kFlatWithin = 1e-6;  // gap over the size below which a facet lands with all its corners
+constexpr double kFlatWithin = 1e-6;  // gap / size below which all corners of a facet land together
 constexpr double kAhead = 1e-6, kCrowded = 1e-2, kGathered = 1e-7, kGathering = 1e-4, kPatience = 100.0, kMargin = 0.1, kAfter = 0.1, kDrift = 1e-2, kNudge = 0.1;
 constexpr int kPiled = 30, kMany = 200, kCrowd = 12, kHalvings = 80;
 
@@ -27,10 +27,12 @@ struct Settings {
     std::int64_t most_events;
 };
 
-// A history at the ends of its steps, and its impacts.
+// States of a history at the ends of its steps, and its impacts.
 struct Trace {
-    std::vector<double> nodes, impacts;           // time, attitude, place, velocity, spin; time, kinetic energy before and after
-    std::vector<std::int64_t> members, stuck, struck;  // contacts at each node, and after each impact: number of vertices, indices
+    // nodes: time, attitude, position, velocity, spin; impacts: time, kinetic energy before and after
+    std::vector<double> nodes, impacts;
+    // contacts at every node and after every impact: number of vertices, and their indices
+    std::vector<std::int64_t> members, stuck, struck;
     double least_cosine = 1.0;
     bool fell = false;
 };
@@ -50,13 +52,14 @@ class Run {
         : b_(body), g_(ground), law_(law), mu_(friction), set_(set), flow_(body, friction), trace_(trace) {
         pace_ = std::sqrt(g_.gravity / b_.size), speed_ = g_.gravity / pace_;
         slow_ = set_.rest_speed * speed_, slack_ = kForce * g_.gravity;
-        rest_ = greater(set_.rest_speed * set_.rest_speed, kClosed);  // smaller gaps, and energies of smaller rises, count as zero
+        // smaller gaps count as zero, and so do the energies of smaller rises
+        rest_ = greater(set_.rest_speed * set_.rest_speed, kClosed);
         weak_ = rest_ * b_.mass * g_.gravity * b_.size;
         stop_ = greater(kSlip, std::sqrt(set_.tolerance)) * speed_, slides_at_ = greater(kSlides, 2.0 * std::sqrt(set_.tolerance)) * speed_;
         length_ = span_ = 0.1 / pace_;
     }
 
-    // stood: the facet under the body before the tilt.
+    // stood: facet below the body before the initial tilt.
     Result run(const State& start, double horizon, int stood) {
         s_ = start;
         until_ = greater(horizon, g_.end());
@@ -104,12 +107,12 @@ class Run {
         return r_;
     }
 
-    // Records a state: peaks, and the departure of the centre from the initial pose.
+    // Records a state: peaks, and the deviation of the centre of mass from the initial pose.
     void keep() {
         const Mat axes = frame(s_.q);
         const double tilt = dot(upright_, axes.c), tilting = -dot(upright_, cross(s_.spin, axes.c)), span = time_ - kept_;
         note(tilt, time_);
-        if (span > 0.0 && tilting_ < 0.0 && tilting > 0.0) {  // smallest cosine of Hermite's cubic
+        if (span > 0.0 && tilting_ < 0.0 && tilting > 0.0) {  // smallest cosine of the Hermite cubic
             const double d0 = tilting_ * span, d1 = tilting * span, rise = tilt - tilt_;
             const double c3 = d0 + d1 - 2.0 * rise, c2 = 3.0 * rise - 2.0 * d0 - d1;
             const double root = std::sqrt(greater(c2 * c2 - 3.0 * c3 * d0, 0.0)), at = -d0 / (c2 + root);
@@ -204,7 +207,7 @@ class Run {
         }
     }
 
-    // Smallest margin of rest: moment of the pressure about the border, or friction.
+    // Smallest margin of rest: moment of the pressure about the border, or friction margin.
     double stands(Vec pull) const {
         double margin = lesser(-pull.z, slips(pull));
         for (const Side& s : sides_)
@@ -218,7 +221,8 @@ class Run {
 
     const State& to(double fraction) {
         if (fraction != part_) {
-            if (fraction != 1.0) flow_.interpolate();  // before the whole step is lost
+            // interpolation needs the complete step, which later steps overwrite
+            if (fraction != 1.0) flow_.interpolate();
             if (across_) {
                 Field sooner;
                 g_.across(stretch_, time_, fraction * span_, sooner);
@@ -231,7 +235,7 @@ class Run {
         return flow_.samples[3];
     }
 
-    // Slip of a vertex that starts to slide, at the end of the step, over its limit.
+    // Largest slip speed / limit of the vertices that start to slide, at the end of the step.
     double fastest_start() const {
         double most = 0.0;
         for (std::size_t k = 0; k < mode_.starting.size(); ++k)
@@ -253,7 +257,7 @@ class Run {
         start_ = s_, span_ = span;
         flow_.step(start_, field_, span_, part_ = 1.0, pace_);
         const double error = flow_.error;
-        if (!std::isfinite(error)) {  // so much force that the first stage leaves all bounds: a shorter step stays within them
+        if (!std::isfinite(error)) {  // forces are so large that the first stage is not finite; a shorter step is used
             if (!(span * pace_ > 1e-10)) return end_with(kNotFinite);
             length_ = 0.1 * span;
             return;
@@ -273,7 +277,7 @@ class Run {
             length_ = span * greater(1.5 / fast, 0.1);
             return;
         }
-        // above 4 all are one
+        // larger growth factors have no effect
         const double growth = error < 5e-4 * set_.tolerance ? 4.0 : 0.9 * std::pow(set_.tolerance / error, 0.2);
         if (error > set_.tolerance && span * pace_ > 1e-10) {
             length_ = span * greater(0.1, growth);
@@ -295,7 +299,7 @@ class Run {
         finish(kind);
     }
 
-    // True if the step may continue to a later sample, with its length.
+    // True if the step may continue to a later sample; sets the length.
     bool crosses(double& length) {
         std::int64_t last = stretch_ + 1;
         if (g_.motion->degree != 1 || last < smooth_ || trace_) return false;
@@ -307,7 +311,7 @@ class Run {
         return true;
     }
 
-    // True if the step violates the contact by more than a small fraction of its error.
+    // True if the step violates the contact by more than a small fraction of the step error.
     bool drifted() const {
         const double most = kDrift * set_.tolerance;
         for (int i : mode_.contact.members) {
@@ -318,7 +322,7 @@ class Run {
         return false;
     }
 
-    // Path of the vertex that slides most: exact for cubics at the four stages.
+    // Path length of the vertex that slides most; exact for cubics at the four stages.
     void slide(double span) {
         static constexpr double weight[4] = {1.0 / 12.0, 10.0 / 21.0, 5.0 / 12.0, 1.0 / 42.0};
         double most = 0.0;
@@ -351,12 +355,12 @@ class Run {
 
     struct Watch {
         Kind kind;
-        int i, slot;     // vertex, and its place among the members
+        int i, slot;     // vertex, and its index among the members
     };
     struct Fall {
         double about, low, high;
         Watch what;
-        double values[4];  // at the stages
+        double values[4];  // values of the margin at the stages
         bool operator<(const Fall& o) const {
             if (about != o.about) return about < o.about;
             if (low != o.low) return low < o.low;
@@ -371,7 +375,7 @@ class Run {
         fallen();
         std::sort(falls_.begin(), falls_.end());
         for (const Fall& f : falls_)
-            for (const double end : {lesser(f.high, fraction), fraction})  // stages are approximate
+            for (const double end : {lesser(f.high, fraction), fraction})  // values at the stages are approximate
                 if ((end == fraction ? at(f.what, end) : near(f.what, end)) < 0.0) {
                     fraction = located(f, lesser(f.low, end), end), first = f.what.kind;
                     break;
@@ -388,7 +392,7 @@ class Run {
             double v[4];
             for (int k = 0; k < 4; ++k) v[k] = margin(w, flow_.samples[k], flow_.axes[k], flow_.forces[k]);
             if (v[0] < 0.0) {
-                // a vertex that has just left is on the ground but for rounding
+                // a vertex that has just left is on the ground, except for rounding
                 if (w.kind != kGap || !(velocity(w.i).z >= -1e-12 * speed_)) {
                     falls_.push_back({0.0, 0.0, 0.0, w, {v[0], v[1], v[2], v[3]}});
                     continue;
@@ -410,8 +414,8 @@ class Run {
             if (near(d.what, d.high) < 0.0) falls_.push_back(d);
     }
 
-    // The zero of a margin that is below zero at the end of a bracket. Aims a little below zero: where the interpolated motion
-    // has it, then by secants on steps of that length.
+    // The zero of a margin that is negative at the end of a bracket. The target is slightly below zero. The first
+    // estimate is from the interpolated motion; secant steps with real steps of that length follow.
     double located(const Fall& f, double low, double high) {
         const Watch& w = f.what;
         const double close = w.kind == kGap ? 0.5 * kGrazed * b_.size : w.kind == kShelf ? kClosed * b_.size : w.kind == kSlipping ? 1e-3 * stop_ : slack_;
@@ -428,7 +432,7 @@ class Run {
         return searched(f, low, high, close);
     }
 
-    // Continues to the zero along the last derivative, if it is so near that the second-order error is zero.
+    // Extrapolates to the zero with the last derivative, if the zero is so near that the second-order error vanishes.
     bool nudged(const Watch& w, double value, double slope, double close) {
         const double fraction = part_;
         for (int k = 0; k < 4; ++k) {
@@ -443,11 +447,11 @@ class Run {
         return false;
     }
 
-    // Where the interpolated motion has a margin at -aim, and how steep it is there; slope 0 if nowhere.
+    // Time at which the interpolated motion has the margin -aim, and the slope there; slope 0 if there is no such time.
     double guessed(const Fall& f, double low, double high, double aim, double& slope) {
         const Watch& w = f.what;
         if (low > 0.0 && near(w, low) < 0.0) high = low, low = 0.0;
-        if (low == 0.0 && f.values[0] == 0.0)  // it has just left: where is it above the ground?
+        if (low == 0.0 && f.values[0] == 0.0)  // the vertex has just left: find a time at which it is above the ground
             for (const double resolution = 1e-6 * high; near(w, low = 0.5 * high) < 0.0;)
                 if (!((high = low) > resolution)) return high;
         double a = low, b = high, at_a = near(w, a) + aim, at_b = near(w, b) + aim, x = 0.0;
@@ -467,12 +471,12 @@ class Run {
         return x;
     }
 
-    // If the interpolation fails: the zero of the cubic through the four stages, within a bracket.
+    // If the interpolation fails: the zero of the cubic through the four stages, in a bracket.
     double searched(const Fall& f, double low, double high, double close) {
         const Watch& w = f.what;
         double at_high = at(w, high), x = guess(f, low, high), last = high, at_last = at_high;
         bool sure = low == 0.0;  // true if the margin is above zero at the low end
-        if (sure && f.values[0] == 0.0)  // it has just left: where is it above the ground?
+        if (sure && f.values[0] == 0.0)  // the vertex has just left: find a time at which it is above the ground
             for (double up = 0.5 * high, resolution = 1e-6 * high; up > resolution; up *= 0.5) {
                 const double value = at(w, up);
                 if (value < 0.0) high = last = up, at_high = at_last = value;
@@ -496,7 +500,7 @@ class Run {
         return high;
     }
 
-    // Where the cubic through the values at the stages falls below zero.
+    // Position where the cubic through the values at the stages becomes negative.
     static double guess(const Fall& f, double low, double high) {
         const double* v = f.values;
         double c[4] = {v[0], v[1], v[2], v[3]};  // divided differences
@@ -530,7 +534,7 @@ class Run {
         const Vec up = axes.c, after = flow_.axes[3].c;
         const double fastest = greater(norm(s_.velocity) + b_.size * norm(s_.spin), norm(end.velocity) + b_.size * norm(end.spin));
         const double reach = fastest * span_, high = s_.place.z, later = end.place.z;
-        // the vertices that are near keep being the same ones until the body has moved through their margin
+        // the list of near vertices remains valid until the body has moved by the margin of the list
         travelled_ += reach;
         if (!(travelled_ + 2.0 * reach <= margin_)) {
             margin_ = greater(kMargin * b_.size, 4.0 * reach), travelled_ = reach;
@@ -562,7 +566,7 @@ class Run {
         return margin(w, s, flow_.axes[3], flow_.forces[3]);
     }
 
-    // The same by interpolation.
+    // Value of an event function from the interpolated motion.
     double near(const Watch& w, double fraction) {
         static const Forces none;
         if (w.kind == kGap && !g_.ends()) return flow_.height(fraction, b_.points[w.i]) + kGrazed * b_.size;
@@ -587,7 +591,7 @@ class Run {
         }
     }
 
-    // Gravity minus the ground acceleration, slightly later.
+    // Gravity minus the ground acceleration, slightly after the present time.
     Vec pull() const {
         if (stretch_ >= g_.motion->count) return g_.weight;
         Field f;
@@ -607,7 +611,7 @@ class Run {
         return p;
     }
 
-    // Replacement if no candidate satisfies all laws: no gap closes, and the tension is smallest.
+    // Replacement if no candidate satisfies all laws: no gap closes, and the tensile force is as small as possible.
     template <class Fits>
     static const Solution* least_pull(const Problem& p, Candidates& all, const Points& touching, double slack, Fits fits) {
         const Solution* best = nullptr;
@@ -636,8 +640,9 @@ class Run {
         bool leaves;
     };
 
-    // The first candidate with forces that satisfy all laws. exclude: ended contacts; closed: vertices stopped by an impact;
-    // leaves: one of its vertices leaves, so that neither sticking nor sliding keeps all of them.
+    // Uses the first candidate with forces that satisfy all laws. exclude: ended contact; closed: vertices stopped by
+    // an impact; leaves: true if a vertex of the ended contact leaves. Then its vertices cannot all remain, sticking or
+    // sliding.
     void choose(const Points& touching, const Contact* exclude = nullptr, const Points* closed = nullptr, bool leaves = false) {
         if (ended_ != kGood || guarded()) return;
         if (!at_once_ || closed) over_.clear();  // contacts that ended at this time are not used again
@@ -652,7 +657,7 @@ class Run {
             if (held || leaves_at <= slow_) near.push_back(i);
             if (held || leaves_at <= kStrikes * speed_) still.push_back(i);
         }
-        // a slowly leaving vertex may stay in addition to vertices at rest, not instead of them
+        // a slowly leaving vertex may remain together with vertices at rest, but cannot replace them
         const auto fits = [&](const Solution& s) {
             const Points& m = s.contact.members;
             return still.empty() || m.empty() || std::any_of(m.begin(), m.end(), [&](int i) { return has(still, i); });
@@ -668,7 +673,7 @@ class Run {
                 }
         Candidates& candidates = holding_;
         candidates.begin(p, touching, near, moving, 1e-5 * g_.gravity, 2.0 * kLadder.back() * g_.gravity);
-        // an ended contact may continue if there is no other
+        // an ended contact may continue if there is no other contact
         for (int pass = crowd ? 3 : 0; pass < (mu_ < kInfinite ? 3 : 1); ++pass) {
             if (pass && over_.empty()) break;
             const auto fresh = [&](const Solution& s) {
@@ -738,7 +743,7 @@ class Run {
     double kinetic() const { return 0.5 * (b_.mass * dot(s_.velocity, s_.velocity) + dot(s_.spin, b_.inertia * s_.spin)); }
     double energy() const { return kinetic() - b_.mass * dot(g_.weight, s_.place); }
 
-    // Takes drift and rounding out of attitude, place and velocities; still: which have no slip.
+    // Removes drift and rounding errors from attitude, position and velocities; still: vertices without slip.
     void settle_on(const Contact& c, const Points& still) {
         const Points& members = c.members;
         if (members.empty()) return;
@@ -767,7 +772,7 @@ class Run {
         }
     }
 
-    // Makes a contact stick, or keep its height, by an impact without friction.
+    // Makes a contact stick, or keep its height, by an impact without bounce.
     bool project(const Contact& c, const Points& stuck) {
         if (c.members.empty()) return false;
         const Problem p = velocities(kInfinite);
@@ -781,7 +786,7 @@ class Run {
         return true;
     }
 
-    // Turns by the smallest angle that brings an edge or a facet onto the ground.
+    // Rotates the body by the smallest angle that brings an edge or a facet onto the ground.
     void level(const Points& members) {
         const Mat axes = frame(s_.q);
         const std::size_t n = members.size();
@@ -859,8 +864,9 @@ class Run {
         keep();
     }
 
-    // Adds all corners of a facet that lands nearly flat to the touching ones, and rotates it to flat: contact passes from corner to corner
-    // at the end of such a landing, at first without loss, in an order that depends on rounding.
+    // Adds all corners of a facet that lands nearly flat to the touching vertices, and rotates the facet to flat. At
+    // the end of such a landing the contact moves from corner to corner, at first without loss, and the order of the
+    // corners depends on rounding.
     void flatten(Points& touching) {
         Points near;
         touch(near, kFlatWithin);
@@ -890,7 +896,7 @@ class Run {
         std::sort(touching.begin(), touching.end());
     }
 
-    // Ends an accumulation of changes at one time: the converging vertices are put in contact at rest.
+    // Ends a sequence of changes at one time: the vertices that approach the ground are placed at rest in contact.
     void gather() {
         const double reach = time_ > gathered_ + kCrowded / pace_ ? kGathered : 10.0 * kGathered;
         gathered_ = time_, changes_ = at_once_ = 0;
@@ -907,14 +913,14 @@ class Run {
         choose(near, nullptr, &near);
     }
 
-    // Makes the largest face stick by a plastic impact, also with a tensile impulse.
+    // Makes the largest face stick by a plastic impact, even if the impulse is tensile.
     void pile(const Points& touching) {
         const Problem p = velocities(0.0);
         const auto all = faces(p, touching);
         if (!all.empty()) project({all[0], {}}, all[0]);
     }
 
-    // Lets vertices that slide stick at once where no force is possible (Painleve).
+    // Makes sliding vertices stick immediately if no contact force exists (Painleve).
     void shocked(const Points& touching) {
         const Points kept = touching;
         const double before = kinetic();
@@ -923,13 +929,14 @@ class Run {
         choose(kept, nullptr, &kept);
     }
 
-    // Lays a nearly resting body flat on a facet, if it remains at rest there.
+    // Places a nearly resting body flat on a facet, if the body remains at rest there.
     void calm() {
         Points near;
         touch(near, 10.0 * rest_);
         if (mode_.resting() || near.size() < 3 || ended_ != kGood) return;
         const Mat now = frame(s_.q);
-        for (int i : near) {  // the energy that stopping one vertex takes is a lower limit; gaps contribute at most 10 of 30
+        // the energy needed to stop one vertex is a lower bound; gaps contribute at most 10 of the 30
+        for (int i : near) {
             const Vec v = point_velocity(b_, s_, now, i);
             if (0.5 * v.z * v.z > 30.0 * weak_ * dot(now.c, b_.soft[i] * now.c)) return;
         }
@@ -973,7 +980,8 @@ class Run {
     bool across_ = false, bordered_ = false, fell_ = false, flew_ = false, slid_ = false, rocked_ = false;
     Status ended_ = kGood;
     std::vector<Over> over_;
-    Candidates holding_, landing_[2];  // for forces, for the impulses of one impact: kept for their storage
+    // candidates for forces, and for the impulses of one impact; stored to reuse their memory
+    Candidates holding_, landing_[2];
     Few<Side> sides_;
     Points touching_, near_;
     Vecs slides_;

@@ -1,17 +1,19 @@
-// Candidates on at most four touching vertices, of which up to three act: their forces in axes of the ground, by a table of effects.
+// Contacts of at most four touching vertices, with forces at up to three vertices. A table of effects gives the
+// solution.
 #pragma once
 #include "contact.hpp"
 
 namespace rocking::hull {
 
-constexpr double kClearly = 1e-3;  // residual of the directions, times the friction, at which a clear violation of a law is certain
+// a clear violation of a law is certain if (1 + friction) * residual of the directions is below this value
+constexpr double kClearly = 1e-3;
 
 // Effect of forces at a few vertices on their rates, in axes of the ground.
 struct Yields {
     static constexpr std::size_t kMost = 4;
     Points at;
     Vec free[kMost], arms[kMost], acts[kMost];
-    Mat yields[kMost][kMost];  // rows: rate of the first by units of force at the second
+    Mat yields[kMost][kMost];  // yields[j][k]: rate of vertex j per unit force at vertex k
 
     Yields(const Problem& p, const Points& vertices) : at(vertices) {
         const Mat &axes = p.axes, &soft = p.body->inverse, turns{axes * (soft * axes.a), axes * (soft * axes.b), axes * (soft * axes.c)};
@@ -29,15 +31,16 @@ struct Yields {
     int slot(int i) const { return static_cast<int>(std::find(at.begin(), at.end(), i) - at.begin()); }
 };
 
-// Forces at up to three vertices of a table.
+// Forces at up to three vertices of the table.
 struct Trial {
     static constexpr int kMost = 3;
-    int n = 0, at[kMost];    // slots of the members in the table
+    int n = 0, at[kMost];    // indices of the members in the table
     Vec force[kMost];
-    Flat ways[kMost];        // directions of the members that slide; zero for the others
+    Flat ways[kMost];        // directions of the sliding members; zero for the others
 };
 
-// Largest violation of a law, over the mass: the smallest slack with which the trial is valid. sticking: members with a friction cone.
+// Largest violation of a law, over the mass; with this or a larger slack the trial is valid. sticking: members with a
+// friction cone.
 inline double excess(const Problem& p, const Yields& table, const Trial& t, unsigned sticking) {
     const double light = 1.0 / p.body->mass, mu = p.friction;
     double most = -kInfinite;
@@ -60,9 +63,10 @@ inline double excess(const Problem& p, const Yields& table, const Trial& t, unsi
     return most;
 }
 
-// The contact is an edge at rest: only the rotation about it remains, and each end has the force across it that the moments require.
+// Contact on an edge at rest: only the rotation about the edge is free. The moments determine the force across the edge
+// at both ends.
 struct Hinge {
-    Vec first, along, lever, resist;  // a point, the direction, its moment arm, inertia about it
+    Vec first, along, lever, resist;  // a point of the edge, its direction, its moment arm, inertia about the edge
     double length = 0.0, about = 0.0;
 
     Hinge() = default;
@@ -73,8 +77,8 @@ struct Hinge {
         about = dot(along, resist) + b.mass * dot(lever, lever);
     }
 
-    // Rates from those without contact. gyro: rate of angular momentum at a constant angular velocity, or minus the angular momentum
-    // before an impact; spin: zero for impacts.
+    // Rates of the edge from rates without contact. gyro: rate of angular momentum at constant angular velocity, or
+    // minus the angular momentum before an impact; spin: zero for impacts.
     void held(const Body& b, Vec gyro, Vec spin, Vec& linear, Vec& angular) const {
         const Vec swing = dot(spin, along) * spin - dot(spin, spin) * along, beta = -1.0 * cross(along, swing);
         const Vec centripetal = dot(spin, first) * spin - dot(spin, spin) * first, pull = cross(beta, first) + centripetal + linear;
@@ -82,14 +86,15 @@ struct Hinge {
         angular = alpha * along + beta, linear = -1.0 * (cross(angular, first) + centripetal);
     }
 
-    // The force, and that of the second end, without its part along the edge, which the first one has.
+    // Total force, and the force at the second end. The first end carries the complete part along the edge.
     std::pair<Vec, Vec> forces(const Body& b, Vec gyro, Vec linear, Vec angular, Vec before) const {
         const Vec force = b.mass * (linear - before), moment = b.inertia * angular + gyro - cross(first, force);
         return {force, 1.0 / length * cross(moment, along)};
     }
 };
 
-// Fractions of a force along an edge by the remaining friction of its ends. side: forces across.
+// Fractions of a force along the edge at both ends, in proportion to the remaining friction. side: forces across the
+// edge.
 inline void share_along(const double* normal, const double* side, double friction, double* by) {
     double weight[2], total = 0.0;
     for (int k = 0; k < 2; ++k) {
@@ -102,7 +107,8 @@ inline void share_along(const double* normal, const double* side, double frictio
     by[0] /= total, by[1] /= total;
 }
 
-// All members stick. False if this needs the general problem: impulses away from their vertices, or more than two vertices in motion.
+// All members stick. False if the general problem is needed: impulses away from their vertices, or over two vertices in
+// motion.
 inline bool stick(const Problem& p, const Yields& table, Trial& t) {
     if (!p.places.empty()) return false;
     for (int k = 0; k < t.n; ++k) t.ways[k] = {};
@@ -151,10 +157,11 @@ inline bool stick(const Problem& p, const Yields& table, Trial& t) {
 // Result of a trial after its solution.
 enum class Verdict { kSolved, kExcluded, kUnsolved };
 
-// Directions of the members that begin to slide, and the forces; one of the others may stick.
+// Finds the directions of the members that begin to slide, and the forces; one other member may stick.
 class Sliding {
   public:
-    // one: the member that sticks, or -1. free: members with unknown direction. soft: their compliance to friction. limit: of the violation of a law.
+    // one: sticking member, or -1. free: members with unknown direction. soft: their compliance to friction. limit:
+    // largest violation.
     Sliding(const Problem& p, const Yields& table, Trial& t, int one, const int* free, int count, const double* soft, double limit)
         : p_(p), table_(table), t_(t), one_(one), count_(count), limit_(limit) {
         std::copy(free, free + count, free_), std::copy(soft, soft + count, soft_);
@@ -186,13 +193,14 @@ class Sliding {
         return verdict;
     }
 
-    // Rate of a member by a unit of an unknown: the push of a member, or the tangential force of the one that sticks.
+    // Rate of every member per unit of an unknown: the force of a member, or the tangential force of the sticking
+    // member.
     void effect(int k) {
         const Flat d = t_.ways[k];
         for (int j = 0; j < t_.n; ++j) effects_[k][j] = row_times({-p_.friction * d.x, -p_.friction * d.y, 1.0}, table_.yields[t_.at[j]][t_.at[k]]);
     }
 
-    // Forces for the directions, and their changes with the free directions.
+    // Forces for the directions, and their derivatives by the free directions.
     template <int n, int rest>
     bool forces(bool changes = false) {
         constexpr int m = n + rest;
@@ -239,7 +247,7 @@ class Sliding {
         return rate;
     }
 
-    // Residuals across the free directions, over the largest that friction moves, and their slopes.
+    // Residuals perpendicular to the free directions, over the largest effect of friction, and their derivatives.
     template <int m>
     double across(double (&r)[3], double (&along)[3], double (&slopes)[kCorners][kCorners + 1]) const {
         double size = 0.0;
@@ -261,7 +269,7 @@ class Sliding {
         return size;
     }
 
-    // After an impact the body turns about the vertical through the vertex that sticks: one of two senses.
+    // After an impact the body rotates about the vertical through the sticking vertex, in one of two senses.
     template <int n, int rest>
     Verdict pivoted() {
         const Vec pivot = table_.arms[t_.at[one_]];
@@ -282,7 +290,7 @@ class Sliding {
     }
 
     template <int n, int rest>
-    Verdict turned() {  // Newton
+    Verdict turned() {  // Newton's method
         constexpr int m = n + rest;
         double r[3], along[3], slopes[kCorners][kCorners + 1];
         if (!forces<n, rest>(true)) return Verdict::kUnsolved;
@@ -324,7 +332,7 @@ class Sliding {
         return Verdict::kUnsolved;
     }
 
-    // Eq. 257, then Newton's method.
+    // Iterates Eq. 257, then uses Newton's method.
     template <int n, int rest>
     Verdict iterated(double still) {
         Flat after[3], moved[3], last[3];
@@ -351,7 +359,7 @@ class Sliding {
                 for (int j = 0; j < count_; ++j) t_.ways[free_[j]] = reached[j];
                 nearly = 0.0;
             }
-            // every third turn continues the last two as a geometric series (Aitken)
+            // every third iteration extrapolates the last two changes as a geometric series (Aitken)
             const double ratio = turn % 3 == 2 && square > 0.0 ? along / square : 0.0;
             const double further = std::fabs(ratio) < 0.98 ? ratio / (1.0 - ratio) : 0.0;
             for (int j = 0; j < count_; ++j) {
@@ -362,7 +370,8 @@ class Sliding {
         return Verdict::kUnsolved;
     }
 
-    // Turns the direction of the only vertex that begins to slide: the other forces follow from its own, and leave one equation for its angle.
+    // Finds the direction of the only vertex that begins to slide. Its force determines all forces, so one equation for
+    // the angle remains.
     template <int n, int rest>
     Verdict alone() {
         constexpr int m = n - 1 + rest, room = m ? m : 1;
@@ -373,7 +382,7 @@ class Sliding {
         for (int k = 0; k < n; ++k)
             if (k != slot) effect(k), from[count] = k, axis[count++] = 2;
         for (int k = 0; k < rest; ++k) from[count] = one_, axis[count++] = k;
-        const auto answer = [&](int j, int k) {  // rate of member j by one of the other forces
+        const auto answer = [&](int j, int k) {  // rate of member j per unit of another force
             const Mat& by = table_.yields[t_.at[j]][t_.at[from[k]]];
             return axis[k] == 0 ? by.a : axis[k] == 1 ? by.b : effects_[from[k]][j];
         };
@@ -399,10 +408,12 @@ class Sliding {
             u = u + t[k][m] * moved, w.a = w.a + t[k][m + 1] * moved, w.b = w.b + t[k][m + 2] * moved, w.c = w.c + t[k][m + 3] * moved;
         }
         const double mu = p_.friction, largest_yield = w.c.z + mu * std::sqrt(w.a.z * w.a.z + w.b.z * w.b.z);
-        if (!(largest_yield > 0.0) || u.z > largest_yield * limit_ * p_.body->mass) return Verdict::kExcluded;  // tensile for each direction
+        // tensile force for every direction
+        if (!(largest_yield > 0.0) || u.z > largest_yield * limit_ * p_.body->mass) return Verdict::kExcluded;
         double r = 0.0, slope = 0.0, along = 0.0, normal = 0.0;
         const auto across = [&](Flat d) {
-            const Vec by = w.c - mu * (d.x * w.a + d.y * w.b), turn = -mu * (d.x * w.b - d.y * w.a);  // rate by a unit of normal force; its slope
+            // rate per unit normal force, and its derivative by the angle
+            const Vec by = w.c - mu * (d.x * w.a + d.y * w.b), turn = -mu * (d.x * w.b - d.y * w.a);
             normal = -u.z / by.z;
             const double change = -normal * turn.z / by.z;
             const Vec slip = u + normal * by, slips = change * by + normal * turn;

@@ -1,4 +1,4 @@
-// Histories over many periods, and flights between impacts, for one instruction set; compiled once for each.
+// Histories over many periods, and motions between impacts, for one instruction set; compiled once for each set.
 #include "kernel.hpp"
 
 #include "lanes.hpp"
@@ -7,7 +7,7 @@ namespace rocking {
 namespace ROCKING_ISA {
 namespace longrun {
 
-// Whole periods of the first sine. Time is counted from the start of the present period where there is one sine.
+// Histories over complete periods of the first sine. With one sine, time starts from zero in each period.
 template <int V>
 class Periods {
     const double* start(const Lane<V>& lane) const { return work.starts + kStart * lane.row; }
@@ -28,13 +28,14 @@ class Periods {
         const double p = std::sqrt(lane.side[lane.s].p2);
         for (int m = 0; m < V; ++m) {
             double* vector = lane.tangent[m];
-            if (m == 1) {  // orthogonal to the first
+            if (m == 1) {  // makes the second vector orthogonal to the first vector
                 const double along = fma(vector[0], lane.tangent[0][0], vector[1] * lane.tangent[0][1] / (p * p));
                 for (int k = 0; k < 2; ++k) vector[k] = fma(-along, lane.tangent[0][k], vector[k]);
             }
             const double norm = std::sqrt(fma(vector[0], vector[0], vector[1] * vector[1] / (p * p)));
             lane.growth[m] += std::log(norm);
-            vector[0] = norm > 0.0 ? vector[0] / norm : 1.0 - m;  // a rest erases every difference: the next vector starts as a unit vector
+            // rest removes every difference: the next vector starts as a unit vector
+            vector[0] = norm > 0.0 ? vector[0] / norm : 1.0 - m;
             vector[1] = norm > 0.0 ? vector[1] / norm : m * p;
         }
     }
@@ -63,7 +64,7 @@ class Periods {
         if (lane.y == 0.0 && lane.v == 0.0) lane.settle();
         next_period(lane);
     }
-    // The end of a period.
+    // Ends a period.
     bool arrived(Lane<V>& lane) const {
         if (lane.cycle >= work.settled) {
             double* section = work.sections + 2 * (work.kept * lane.row + lane.cycle - work.settled);
@@ -94,10 +95,10 @@ class Periods {
     }
 };
 
-// Flights over a number of impacts; with three tangent vectors: by start time, by start speed, by a parameter.
+// Motions over a number of impacts. Three tangent vectors: derivatives by start time, start speed and a parameter.
 template <int V>
 class Impacts {
-    static constexpr std::int64_t kMostSteps = 10000;  // between two impacts
+    static constexpr std::int64_t kMostSteps = 10000;  // largest number of steps between two impacts
 
     void write(const Lane<V>& lane, Event event) const {
         double* end = work.ends + kEnds * lane.row;

@@ -7,7 +7,7 @@ namespace rocking {
 namespace longrun {
 
 struct Side {
-    double alpha, p2, r;  // coefficient of restitution of impacts that end the contact on this side
+    double alpha, p2, r;  // r: coefficient of restitution of impacts that end the contact on this side
 };
 // Factor on the coefficients of restitution over the rotation rate before the impact: linear between points, constant outside.
 struct SpeedLaw {
@@ -15,15 +15,16 @@ struct SpeedLaw {
     int points;
 };
 struct Sine {
-    double amplitude, omega, phase;  // of the ground acceleration over g
+    double amplitude, omega, phase;  // ground acceleration over g: amplitude, circular frequency, phase
 };
 enum class Parameter : int { none, amplitude, omega, restitution, alpha };
 
 struct Settings {
     int sines;
     bool linear;
-    double overturned, rest, step_error;  // final rotation, speed over alpha p of a possible rest, error of a step over alpha
-    Parameter parameter;      // of the last tangent vector; the amplitudes change in proportion
+    // rotation at the end, largest speed / (alpha p) of a possible rest, error of a step / alpha
+    double overturned, rest, step_error;
+    Parameter parameter;      // parameter of the last tangent vector; all amplitudes change in proportion
     SpeedLaw law;
 };
 
@@ -35,12 +36,12 @@ struct Rows {
     std::int64_t count;
     Settings set;
 };
-// Histories over whole periods of the first sine: settled ones, then kept ones with their states and impacts.
+// Histories over complete periods of the first sine: transient periods, then recorded periods with states and impacts.
 struct Cycles : Rows {
     double *results, *sections, *impacts;
     std::int64_t settled, kept, most_impacts;
 };
-// Flights from one impact over a number of impacts, with derivatives.
+// Motions from one impact over a number of impacts, with derivatives.
 struct Flights : Rows {
     double* ends;
     std::int64_t impacts;

@@ -1,5 +1,5 @@
-// One history among those that step side by side: its body, its forcing, its state, and everything that happens to it apart from
-// plain steps: impacts, rest, uplift.
+// One of the histories that are computed in parallel: body, forcing, state, and all events apart from regular steps
+// (impacts, rest, uplift).
 //
 // y = |rotation| about the corner in contact: y'' = -p^2 (sin(alpha - y) + s u cos(alpha - y)), u = ground acceleration / g,
 // s = +-1 the side; linear: y'' = -p^2 (alpha - y + s u). An impact turns the velocity v < 0 at y = 0 into r |v| on the other side.
@@ -43,14 +43,15 @@ struct Column {
             value = fma(value, x, c[k]);
         }
     }
-    // First zero on (0, 1], without the zero of multiplicity `skip` at the start; above 1 where there is none.
+    // First zero on (0, 1]; a zero of multiplicity `skip` at the start is ignored. Above 1 if there is no zero.
     double zero(int skip) const {
         if (skip == 0) return first_zero<kOrder>(c);
         if (skip == 1) return first_zero<kOrder - 1>(c + 1);
         if (skip == 2) return first_zero<kOrder - 2>(c + 2);
         return first_zero<kOrder - 3>(c + 3);
     }
-    // The largest value of the polynomial times a sign between 0 and `end` at a zero of the slope; minus infinity without one.
+    // Largest value of sign * polynomial at zeros of the slope between 0 and `end`; minus infinity if there is no such
+    // zero.
     double top(double end, double sign = 1.0) const {
         double slope[kOrder], largest = -INFINITY;
         slopes_of<kOrder>(c, slope);
@@ -63,15 +64,17 @@ struct Column {
 template <int V>
 struct Lane {
     Side side[2];
-    double threshold[2], cosine[2];  // ground acceleration over g that lifts the body; cosine of alpha, 1 for the linear equations
+    // ground acceleration / g at uplift; cosine of alpha, or 1 for the linear equations
+    double threshold[2], cosine[2];
     const Sine* sines;
     Settings set;
     std::int64_t row = -1, impacts = 0, rests = 0, steps = 0;
     int s = 0;  // side in contact: 0 for a positive rotation
     bool resting = false, lifts = false;
     double t = 0.0, y = 0.0, v = 0.0, until = 0.0, tangent[V > 0 ? V : 1][2] = {};
-    double peak = 0.0, trough = INFINITY, before = 0.0, falling = 0.0;  // largest y and smallest minimum over alpha; velocity and acceleration before the last impact
-    std::int64_t cycle = 0, stored = 0, earlier_impacts = 0, earlier_rests = 0;  // of the driver
+    // largest y and smallest minimum over alpha; velocity and acceleration before the last impact
+    double peak = 0.0, trough = INFINITY, before = 0.0, falling = 0.0;
+    std::int64_t cycle = 0, stored = 0, earlier_impacts = 0, earlier_rests = 0;  // used by the driver
     double growth[2] = {};
 
     void begin(const double* body, const Sine* forcing, const Settings& settings) {
@@ -104,7 +107,7 @@ struct Lane {
         ground(u, rate);
         return -side[s].p2 * cosine[s] * fma(sign(), u, threshold[s]);
     }
-    // Put the body at rest, or let it rise where the ground lifts it already.
+    // Puts the body at rest, or starts its rise if the ground already causes uplift.
     void settle() {
         double u, rate;
         ground(u, rate);
@@ -116,9 +119,9 @@ struct Lane {
                 resting = false;
             }
     }
-    // Wait for the ground to reach the threshold of a side, by steps that cannot pass it.
+    // Waits until the ground acceleration reaches the threshold of a side, with steps that cannot pass this time.
     void wait() {
-        double bound = 0.0;  // of the second derivative of the ground acceleration
+        double bound = 0.0;  // bound of the second derivative of the ground acceleration
         for (int i = 0; i < set.sines; ++i) bound = fma(std::fabs(sines[i].amplitude) * sines[i].omega, sines[i].omega, bound);
         while (resting && t < until) {
             double u, rate, h = until - t;
@@ -137,7 +140,8 @@ struct Lane {
             t = h < until - t ? t + h : until;
         }
     }
-    // Index of the last point of the speed law at or below a rate; -1 below all, the last one above all.
+    // Index of the last point of the speed law at or below a rate; -1 below all points, the last point above all
+    // points.
     int interval(double rate) const { return static_cast<int>(std::upper_bound(set.law.at, set.law.at + set.law.points, rate) - set.law.at) - 1; }
     double slope_at(double rate) const {
         const int k = interval(rate);
@@ -149,7 +153,8 @@ struct Lane {
         const int k = std::max(interval(rate), 0);
         return fma(slope_at(rate), rate - set.law.at[k], set.law.factors[k]);
     }
-    // The impact at y = 0 with a velocity v < 0; tangent vectors by the saltation matrix [[r, 0], [(a+ - r' a-) / v-, r']], r' = d(r v) / dv.
+    // The impact at y = 0 with a velocity v < 0. Tangent vectors: saltation matrix [[r, 0], [(a+ - r' a-) / v-, r']],
+    // r' = d(r v) / dv.
     Event land() {
         const double rate = -v, factor = factor_at(rate), r = side[s].r * factor, derivative = fma(side[s].r * slope_at(rate), rate, r);
         before = v;
@@ -173,7 +178,7 @@ struct Lane {
         }
         return Event::impact;
     }
-    // With speeds this far beyond the point of no return no ground motion of its size brings the body back.
+    // At larger speeds beyond the point of no return, no ground motion of this size brings the body back.
     bool is_lost() const {
         if (!set.linear) return y > set.overturned;
         double most = 0.0;

@@ -1,4 +1,4 @@
-// Taylor steps of many histories side by side; a lane whose history ends takes the next row.
+// Taylor steps of many histories in parallel; when the history of a lane ends, the lane takes the next row.
 #pragma once
 #include "lane.hpp"
 
@@ -8,10 +8,11 @@ namespace longrun {
 
 #define ROCKING_LANES ROCKING_UNROLL for (int j = 0; j < U; ++j)
 
-// V tangent vectors. Driver begins and ends the histories and stores their results.
+// V: number of tangent vectors. Driver starts and ends the histories and stores their results.
 template <int V, class Driver>
 class Lanes {
-    static constexpr int U = 2, P = Pack::width, W = U * P;  // registers that step side by side, their width, lanes
+    // registers that are computed in parallel, their width, number of lanes
+    static constexpr int U = 2, P = Pack::width, W = U * P;
     using Row = Pack[U];
     const Driver driver;
     const Settings& set = driver.work.set;
@@ -42,7 +43,7 @@ class Lanes {
     }
 
   private:
-    // Bring a lane to its next plain step: rest, the ends of periods and new rows are dealt with here.
+    // Advances a lane to its next regular step: handles rest, ends of periods and new rows.
     void ready(int i) {
         Lane<V>& one = lane[i];
         for (;;) {
@@ -109,7 +110,7 @@ class Lanes {
         }
     }
 
-    // Sum over j = first ... k of a_j b_(k-j), in two parts.
+    // Sum over j = first ... k of a_j b_(k-j), as two partial sums.
     static void product(const Row* a, const Row* b, int k, int first, Row& sum) {
         Row odd;
         ROCKING_LANES sum[j] = odd[j] = Pack(0.0);
@@ -146,7 +147,7 @@ class Lanes {
             const Pack over(-1.0 / ((k + 1) * (k + 2)));
             ROCKING_LANES c[k + 2][j] = at(p2, j) * over * fma(at(side, j), F[k][j], S[k][j]);
         }
-        for (int i = 0; i < W; ++i)  // the acceleration is zero at the moment of uplift
+        for (int i = 0; i < W; ++i)  // the acceleration is zero at the time of uplift
             if (lane[i].lifts) reinterpret_cast<double*>(c[2])[i] = 0.0;
         if constexpr (V > 0) variations();
     }
@@ -178,7 +179,7 @@ class Lanes {
         }
     }
 
-    // Approximate n-th root (error of a few per cent). Uses only operations with defined rounding.
+    // Approximate n-th root (error of a few per cent), computed only by operations with defined rounding.
     static double root(double x, int n) {
         int exponent;
         const double mantissa = std::frexp(x, &exponent), power = (exponent - 2.0 + 2.0 * mantissa) / n, below = std::floor(power);
@@ -201,7 +202,7 @@ class Lanes {
         }
     }
 
-    // Rotation, velocity and tangent vectors at the ends of the steps, and the bounds that show that y has no zero before.
+    // Rotation, velocity and tangent vectors at the ends of the steps, and bounds that exclude an earlier zero of y.
     void advance() {
         ROCKING_LANES {
             const Pack x = at(h, j);
@@ -281,7 +282,7 @@ class Lanes {
         one.t += zero * h[i];
         return one.land();
     }
-    // The highest and the lowest point within a step.
+    // Records the highest and the lowest point within a step.
     void crest(Lane<V>& one, const Column& y, double end) {
         one.peak = std::max(one.peak, y.top(end) / one.side[one.s].alpha);
         if (V == 3) one.trough = std::min(one.trough, -y.top(end, -1.0) / one.side[one.s].alpha);

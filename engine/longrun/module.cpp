@@ -1,4 +1,4 @@
-// The door to Python: rows of bodies, forcings and starts; threads take rows in turn.
+// Interface to Python: rows of bodies, forcings and starts. Threads take rows in turn.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
@@ -23,7 +23,7 @@ static void expect(bool holds, const char* message) {
     if (!holds) throw std::invalid_argument(message);
 }
 
-// The instruction set of a name; without a name the fastest one of this processor that was compiled.
+// Instruction set with a given name; without a name, the fastest compiled set that this processor supports.
 static int level(const std::string& isa) {
     int known = 0;
 #if defined(ROCKING_X86)
@@ -56,7 +56,7 @@ static void spread(const Work& work, int vectors, int threads, const std::string
 using Table = Array<const double, 2>;
 using Sines = Array<const double, 3>;
 
-// bodies: (rows, 6), sines: (rows, sines, 3), starts: (rows, 3); law: (2, points); results: all tables of results.
+// bodies: (rows, 6), sines: (rows, sines, 3), starts: (rows, 3), law: (2, points), results: all result tables.
 template <class... Results>
 static Rows rows_of(const Table& bodies, const Sines& sines, const Table& starts, const Table& law, int parameter, bool linear, double overturned, double rest,
                     double step_error, const Results&... results) {
@@ -69,7 +69,7 @@ static Rows rows_of(const Table& bodies, const Sines& sines, const Table& starts
              {law.data(), law.data() + law.shape(1), static_cast<int>(law.shape(1))}}};
 }
 
-// Over periods, from starts of time, rotation and rotation rate.
+// Histories over periods; a start has time, rotation and rotation rate.
 static void many(Table bodies, Sines sines, Table starts, Array<double, 2> results, Array<double, 3> sections, Array<double, 3> impacts, Table law, std::int64_t settled,
                  int vectors, bool linear, double overturned, double rest, double step_error, int threads, const std::string& isa) {
     const Rows rows = rows_of(bodies, sines, starts, law, 0, linear, overturned, rest, step_error, results, sections, impacts);
@@ -79,9 +79,9 @@ static void many(Table bodies, Sines sines, Table starts, Array<double, 2> resul
     spread(Cycles{rows, results.data(), sections.data(), impacts.data(), settled, kept, most}, vectors, threads, isa);
 }
 
-// From one impact over n: starts of time, speed after the impact and side; ends (rows, 13): time, speed, side, event, derivatives of
-// time and then of speed by start time, start speed and parameter (none for -1), peak over alpha, velocity before the last impact,
-// and the smallest y over alpha at a minimum between impacts (with derivatives).
+// Motions over n impacts. starts: time, speed after the impact, side. ends (rows, 13): time, speed, side, event,
+// derivatives of time and then of speed by start time, start speed and parameter (-1: none), peak over alpha, velocity
+// before the last impact, and smallest minimum of y between impacts, over alpha (only with derivatives).
 static void over_impacts(Table bodies, Sines sines, Table starts, Array<double, 2> ends, Table law, std::int64_t n, int parameter, bool linear, double overturned,
                          double rest, double step_error, int threads, const std::string& isa) {
     const Rows rows = rows_of(bodies, sines, starts, law, parameter, linear, overturned, rest, step_error, ends);

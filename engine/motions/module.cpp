@@ -1,6 +1,6 @@
-// Costly operations of synthetic motions: elementary functions and recurrences of sums and products only, in the
-// order of `portable.py`, so that a seed has the same bits on all processors, and without this module.
-// Also response spectra, which are measures without this requirement.
+// Fast versions of expensive operations of synthetic motions: elementary functions and recurrences of sums and
+// products, in the order of `portable.py`. Thus a seed gives the same bits on all processors, with and without this
+// module. The module also contains response spectra, which are measures without this requirement.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/complex.h>
@@ -25,9 +25,9 @@ using Line = nb::ndarray<T, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
 constexpr double kLog2High = 6.93147180369123816490e-01, kLog2Low = 1.90821492927058770002e-10;
 constexpr double kHalfPiHigh = 1.57079632673412561417e+00, kHalfPiLow = 6.07710050650619224932e-11;
-constexpr double kRound = 6755399441055744.0;  // 1.5 * 2^52: its addition and subtraction rounds to an integer
+constexpr double kRound = 6755399441055744.0;  // 1.5 * 2^52: adding and subtracting this number rounds to an integer
 
-// Terms of the series, as Python divides them.
+// Terms of the series, divided in the same way as in Python.
 struct Factorials {
     double inverse[19] = {1.0};
     constexpr Factorials() {
@@ -55,7 +55,7 @@ static inline double exponential(double x) {
     const double r = (inside - k * kLog2High) - k * kLog2Low;
     double p = kTerms.inverse[13];
     for (int n = 12; n >= 0; --n) p = p * r + kTerms.inverse[n];
-    // the last bits of the rounded value are k: they become the exponent of a power of two
+    // the last bits of the rounded value are k; they become the exponent of a power of two
     const double power = from_bits((bits_of(rounded) + 1023) << 52);
     return x < -708.0 ? 0.0 : p * power;
 }
@@ -112,7 +112,7 @@ static void cosines_sines(Line<const double> x, Line<double> cosine, Line<double
     for (std::size_t i = 0; i < x.shape(0); ++i) cosine_sine(x.data()[i], cosine.data()[i], sine.data()[i]);
 }
 
-// Two states advanced by a matrix, and their increments after every step.
+// Advances two states by a matrix and by their increments in every step.
 static void recurrence(double m00, double m01, double m10, double m11, Line<const double> first, Line<const double> second,
                        Line<double> z, Line<double> v) {
     check(first.shape(0) == second.shape(0) && z.shape(0) == first.shape(0) + 1 && v.shape(0) == z.shape(0));
@@ -126,7 +126,7 @@ static void recurrence(double m00, double m01, double m10, double m11, Line<cons
     }
 }
 
-// Four oscillators in parallel: the rotation of a step and of twice its angle, and the states.
+// Four oscillators in parallel: rotation per step, rotation by twice this angle, and states.
 constexpr int kLanes = 4, kNeighbours = 10;
 struct Four {
     double c[kLanes] = {}, s[kLanes] = {}, q[kLanes] = {}, cc[kLanes] = {}, ss[kLanes] = {};
@@ -163,7 +163,7 @@ ROCKING_WIDER void turn(Four* from, const Four* end, Four* fed, int feeds, const
     }
 }
 
-// Lagrange's weights of `width` neighbours at integer positions, for a position from 0 to 1 in their middle.
+// Lagrange weights of `width` neighbours at integer positions, for a position from 0 to 1 in their middle.
 template <int width>
 struct Shares {
     double scale[width];
@@ -189,15 +189,15 @@ struct Shares {
     }
 };
 
-// Impulses on damped oscillators of fixed frequencies, in order; each impulse is distributed to the neighbours of its position. Sums of the
-// sines, and of the squared responses times two, after every step.
+// Impulses on damped oscillators with fixed frequencies, in order. An impulse is distributed to the neighbours of its
+// position. Outputs after every step: sums of the sines, and twice the sums of the squared responses.
 template <int width>
 static void resonate(const double* noise, const double* omega, const double* positions, std::int64_t count, std::vector<Four>& four,
                      const std::int64_t* lasting, std::int64_t nodes, double* total, double* variance) {
     std::vector<std::int64_t> fed(four.size() * kLanes, 0);
     const Shares<width> shares;
     std::int64_t low = 0, past = 0;
-    // the weights of a stretch of steps first: vectors are read long after the numbers in them were written
+    // compute the weights of several steps first: a vector load soon after single stores is slow
     constexpr int kStretch = 32, kRoom = (width / kLanes + 2) * kLanes;
     double weights[kStretch][kRoom];
     for (std::int64_t n = 0; n < count; ++n) {

@@ -1,4 +1,4 @@
-// Linear oscillators under straight lines between samples: their states and peak responses. With the
+// Linear oscillators under accelerations that are linear between samples: states and peak responses. With the
 // complex rate s the state z = u' - conj(s) u obeys z' = s z - a (Eq. 150).
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace rocking::motions {
 
-// Wider registers change only the computing time: no product is fused with a sum.
+// Wider registers change only the computing time: products and sums are never fused.
 #if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__)
 #define ROCKING_WIDER __attribute__((target_clones("avx2", "default")))
 #else
@@ -26,7 +26,8 @@ static inline Complex times(Complex a, Complex b) {
     return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
 }
 
-// State after a time, and for a ground that starts at one and rises by one per step (Eqs. 151, 152).
+// State after a time, and response to a ground acceleration that starts at one and rises by one per step (Eqs. 151,
+// 152).
 struct Stretch {
     Complex decay, level, rise;
     Stretch(Complex rate, double t, double step) {
@@ -62,10 +63,10 @@ struct Feels {
     }
 };
 
-// Largest magnitude of the cubic through values and slopes at both ends of a stretch, its start left out.
+// Largest magnitude of the cubic with given values and slopes at both ends of a stretch; the start value is excluded.
 static inline double cubic_peak(double y, double d, double z, double e, double best) {
     best = std::max(best, std::abs(z));
-    // no cubic leaves the range of its ends by more than 4/27 of its slopes: most need no closer look
+    // a cubic exceeds its end values by at most 4/27 of its slopes, so most stretches need no closer examination
     if (std::max(std::abs(y), std::abs(z)) + 4.0 / 27.0 * (std::abs(d) + std::abs(e)) <= best) return best;
     const double bend = d + e - 2.0 * (z - y), turn = 3.0 * (z - y) - 2.0 * d - e;
     const double inside = turn * turn - 3.0 * bend * d;
@@ -76,7 +77,7 @@ static inline double cubic_peak(double y, double d, double z, double e, double b
     return best;
 }
 
-constexpr int kTogether = 4;  // oscillators that are followed side by side
+constexpr int kTogether = 4;  // oscillators that are computed in parallel
 
 struct Lanes {
     double decay_r[kTogether] = {}, decay_i[kTogether] = {}, before_r[kTogether] = {}, before_i[kTogether] = {},
@@ -85,7 +86,7 @@ struct Lanes {
     double top[3][kTogether] = {};
 };
 
-// The states at the samples, at rest at the first, and the largest magnitudes there.
+// States at the samples, from rest at the first sample, and the largest magnitudes at the samples.
 ROCKING_WIDER void follow(const double* a, std::size_t n, Lanes& with, double* re, double* im) {
     double x[kTogether] = {}, y[kTogether] = {}, top[3][kTogether] = {};
     for (int i = 0; i < kTogether; ++i) re[i] = im[i] = 0.0;
@@ -110,7 +111,7 @@ ROCKING_WIDER void follow(const double* a, std::size_t n, Lanes& with, double* r
         for (int i = 0; i < kTogether; ++i) with.top[j][i] = top[j][i];
 }
 
-// Within a step the change of a state is at most the push of the ground, from both ends: bound of the state.
+// In a step a state changes by at most the integral of the ground acceleration. The bound uses both ends.
 ROCKING_WIDER void reaches(const double* push, std::size_t steps, const double* shrink, const double* re, const double* im,
                            const double* needed, std::vector<std::uint8_t>& close) {
     double size[kTogether] = {};
@@ -125,7 +126,7 @@ ROCKING_WIDER void reaches(const double* push, std::size_t steps, const double* 
     }
 }
 
-// The first of a group of oscillators, and the next ones: data for `follow`.
+// Data of a group of consecutive oscillators for `follow`.
 static Lanes lanes(const Complex* rates, std::size_t group_size, double step) {
     Lanes with;
     for (std::size_t i = 0; i < group_size; ++i) {
@@ -151,8 +152,8 @@ static void states_of(const double* a, std::size_t n, double step, const Complex
     }
 }
 
-// Largest displacement, velocity and absolute acceleration, one row an oscillator. `reach` is the largest of each that a
-// state of magnitude one can have, `parts` the stretches into which a step is parted, `points` those of free vibration.
+// Largest displacement, velocity and absolute acceleration, one row per oscillator. `reach` is the largest of each for
+// a state of magnitude one, `parts` the number of parts of a step, and `points` the number of points in free vibration.
 static void peaks_of(const double* a, std::size_t n, double step, const Complex* rates, std::size_t count,
                      const double* reach, const std::int64_t* parts, double margin, std::int64_t points, double* peaks) {
     std::vector<double> re(n * kTogether), im(n * kTogether), push(n);
@@ -201,12 +202,13 @@ static void peaks_of(const double* a, std::size_t n, double step, const Complex*
     }
 }
 
-// Extent of a path in every direction so far, and an ellipse of similar shape, as large as fits within.
+// Largest extent of a path in every direction, and an inscribed ellipse of similar shape.
 struct Outline {
     const double *cosine, *sine;
     std::size_t count;
     std::vector<double> best;
-    double xx, xy, yy, inside = 0.0;  // a place within has no larger quadratic form, and changes nothing
+    // a point inside the ellipse has a smaller quadratic form than `inside`, and does not change the extent
+    double xx, xy, yy, inside = 0.0;
 
     ROCKING_WIDER static void raise_by(double x, double y, const double* cosine, const double* sine, std::size_t count,
                                        double* best) {
@@ -227,7 +229,7 @@ struct Outline {
     }
 };
 
-// The largest displacement in every direction, one row per oscillator, under two components.
+// Largest displacement in every direction under two components, one row per oscillator.
 static void directions_of(const double* a, const double* b, std::size_t n, double step, const Complex* rates, std::size_t count,
                           const double* cosine, const double* sine, std::size_t directions, const std::int64_t* parts,
                           std::int64_t points, double* peaks) {
@@ -247,9 +249,9 @@ static void directions_of(const double* a, const double* b, std::size_t n, doubl
                 const double x = first_state(k).imag(), y = other(k).imag();
                 xx += x * x, xy += x * y, yy += y * y;
             }
-            const double room = 1e-6 * (xx + yy);  // of a path that is nearly a line
+            const double room = 1e-6 * (xx + yy);  // for a path that is nearly a line
             Outline outline{cosine, sine, directions, std::vector<double>(directions, 0.0), yy + room, -xy, xx + room};
-            // the ends of the path along some directions first: most other places lie within
+            // the extreme points in some directions first: then most other points are inside the ellipse
             for (std::size_t d = 0; d < directions; d += 12) {
                 double most = -1.0;
                 std::size_t at = 0;
@@ -273,7 +275,8 @@ static void directions_of(const double* a, const double* b, std::size_t n, doubl
             const double needed = 2.0 * s.imag() * std::sqrt(outline.inside), width = step / number;
             double size = 0.0, pushed = std::sqrt(outline.form(a[0], b[0]));
             for (std::size_t k = 0; k + 1 < n; ++k) {
-                // within a step a state changes by no more than the push of the ground, seen from either of its ends
+                // in a step a state changes by at most the integral of the ground acceleration, measured from either
+                // end
                 const double next = std::sqrt(outline.form(first_state(k + 1), other(k + 1)));
                 const double push = std::sqrt(outline.form(a[k + 1], b[k + 1]));
                 const bool close = size + shrink * (next + step * std::max(pushed, push)) >= needed;
@@ -287,7 +290,7 @@ static void directions_of(const double* a, const double* b, std::size_t n, doubl
                     const double z = right.imag() * inverse, w = right2.imag() * inverse;
                     const double d = width * (left.real() + s.real() * p), d2 = width * (left2.real() + s.real() * q);
                     const double e = width * (right.real() + s.real() * z), e2 = width * (right2.real() + s.real() * w);
-                    // a cubic lies within the hull of its ends and two points on its tangents
+                    // a cubic is inside the convex hull of its ends and two points on its tangents
                     if (outline.beyond(p, q) || outline.beyond(z, w) || outline.beyond(p + d / 3.0, q + d2 / 3.0) ||
                         outline.beyond(z - e / 3.0, w - e2 / 3.0)) {
                         for (const double t : {0.25, 0.5, 0.75})

@@ -1,4 +1,4 @@
-// Force laws of restraints as phases, and their elongation by the rotation.
+// Force laws of restraints, as sequences of phases, and elongation of restraints as a function of the rotation.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -53,7 +53,7 @@ struct Law {
     bool broken() const { return phase.name == kBroken; }
     bool is_power() const { return coefficient != 0.0 && exponent != 1.0; }
 
-    // Chooses the phase for a direction of e', after uplift, impact, turning point or reversal of the lever.
+    // Selects the phase for a direction of e', after uplift, impact, turning point or reversal of the lever.
     void settle(double e, int direction) {
         if (kind == Kind::bilinear && phase.direction * direction < 0) {
             flow(e);
@@ -67,7 +67,7 @@ struct Law {
         }
     }
 
-    // Chooses the phase beyond a limit of the present phase.
+    // Selects the phase beyond a limit of the present phase.
     void cross(double e, bool upwards) {
         if (kind == Kind::spring) {
             const Phase tension{kTension, -stiffness * gap, stiffness, gap, kInf, 0}, compression{kCompression, stiffness * gap, stiffness, -kInf, -gap, 0};
@@ -102,7 +102,7 @@ struct Law {
         p.low = std::max(p.low, symmetric ? -rupture : -kInf), p.high = std::min(p.high, rupture);
         return p;
     }
-    // Elongation of the elastic phase at a force.
+    // Elongation in the elastic phase at a given force.
     double at(double force) const {
         if (stiffness == 0.0) return force > prestress ? kInf : -kInf;
         return plastic + (force - prestress) / stiffness;
@@ -131,7 +131,7 @@ struct Lever {
     double elongation(double rotation) const {
         return linear ? at_rest * rotation : elongation(std::sin(0.5 * rotation), std::cos(0.5 * rotation));
     }
-    double elongation(double s, double c) const {  // of half the rotation
+    double elongation(double s, double c) const {  // s, c: sine and cosine of half the rotation
         if (length == 0.0) return 2.0 * radius * s;  // Eq. 344
         const double change = 4.0 * s * (along * s - across * c);
         return change / (length + std::sqrt(length * length + change));  // Eq. 343
@@ -164,7 +164,7 @@ struct Device {
         elongation = e, rate = v;
         note();
     }
-    // Moves from the upright state to the state at the start, without dynamics.
+    // Changes from the upright state to the initial state, without dynamics.
     void load(double e) {
         const bool up = e > 0.0;
         if (e != 0.0) law.settle(0.0, up ? 1 : -1);

@@ -10,14 +10,14 @@ constexpr double kNothing = 1e-9, kLongest = 40.0, kHeights = 0.1;
 
 // A ground motion as polynomials on equal stretches.
 struct Motion {
-    const double *push, *lift;  // no lift without a vertical part
+    const double *push, *lift;  // lift is null without a vertical part
     std::int64_t count;
     int terms;
     double step;
 
     double value_of(const double* c, std::int64_t stretch, double tau) const { return value_at(c + stretch * terms, terms, tau); }
 
-    // The polynomial over a part of a stretch, times a factor, as one of y: tau + width y.
+    // The polynomial over a part of a stretch, times a factor, as a function of y: time = tau + width y.
     void shifted(const double* from, std::int64_t stretch, double tau, double width, double factor, double* c) const {
         const double* a = from + stretch * terms;
         for (int k = 0; k < terms; ++k) c[k] = factor * a[k];
@@ -41,7 +41,7 @@ struct Extent {
     double low = 0.0, high = 0.0, variation = 0.0;
 };
 
-// Restoring moments D = (1 + a_z / g) sin alpha + s (a_x / g) cos alpha + those of restraints, over m g R.
+// Restoring moments D = (1 + a_z / g) sin alpha + s (a_x / g) cos alpha + moments of restraints, over m g R.
 struct Holding {
     double more[2], sine[2], cosine[2];
 
@@ -57,7 +57,7 @@ struct Holding {
         polynomial(side, m, stretch, scale, d);
         return value_at(d, m.terms, tau);
     }
-    // First instant of a stretch at which a side is no longer held down; 2 if it is throughout.
+    // First instant of a stretch at which the restoring moment of a side is not positive; 2 if there is none.
     double release(const Body&, int side, const Motion& m, std::int64_t stretch, double from, double scale) const {
         double d[8];
         polynomial(side, m, stretch, scale, d);
@@ -79,7 +79,8 @@ struct Holding {
     }
 };
 
-// Minimum, maximum and variation of a motion over stretches, from tau of the first; exact for lines.
+// Minimum, maximum and variation of a motion over several stretches, from tau in the first stretch; exact for linear
+// motions.
 inline Extent extent_of(const Motion& m, const double* c, std::int64_t first, std::int64_t stretches, double tau, double scale) {
     Extent e;
     double end = 0.0;
@@ -101,7 +102,7 @@ inline Extent extent_of(const Motion& m, const double* c, std::int64_t first, st
     return e;
 }
 
-// Whether the next impacts provably decay to rest before the body could rise again (docs/theory/rest.md).
+// True if the next impacts provably decay to rest before the body can rise again (docs/theory/rest.md).
 inline bool comes_to_rest(const Body& b, const Holding& held, const Motion& m, std::int64_t stretch, double tau, std::int64_t count, double scale, int sign,
                           double after, double rest_speed) {
     const int k = sign > 0 ? 0 : 1, o = 1 - k;
@@ -126,7 +127,7 @@ inline bool comes_to_rest(const Body& b, const Holding& held, const Motion& m, s
         x = extent_of(m, m.push, stretch, moving, tau, scale);
         if (m.lift) z = extent_of(m, m.lift, stretch, moving, tau, scale);
     }
-    if (moving < stretches) {  // ground at rest after the motion
+    if (moving < stretches) {  // the ground is at rest after the motion
         const double *a = m.push + (last - 1) * m.terms, *c = m.lift ? m.lift + (last - 1) * m.terms : nullptr;
         if (moving) x.variation += std::fabs(scale * value_at(a, m.terms, 1.0)), z.variation += c ? std::fabs(scale * value_at(c, m.terms, 1.0)) : 0.0;
         x.low = std::min(x.low, 0.0), x.high = std::max(x.high, 0.0), z.low = std::min(z.low, 0.0), z.high = std::max(z.high, 0.0);

@@ -1,4 +1,4 @@
-// One history of a body with restraints: Taylor steps from event to event, all events zeros of the series.
+// One history of a body with restraints: Taylor steps from event to event. All events are zeros of the series.
 #pragma once
 #include <vector>
 
@@ -75,7 +75,7 @@ class Run {
         else head(rate_ > 0.0 ? 1 : -1);
     }
 
-    // Ground over a part of the stretch from tau on, over g: push and weight.
+    // Ground motion over the part of the stretch after tau, over g: push and weight.
     int ground(double width, double* push, double* weight) const {
         for (int k = 0; k < m_.terms; ++k) push[k] = weight[k] = 0.0;
         if (stretch_ < std::min(m_.count, count_)) {
@@ -96,7 +96,7 @@ class Run {
         s_.expand(q(), theta_, rate_, h, push, weight, terms, d_.data(), count);
         if (singular) return pass_turn(h, width);
         const double fraction = trusted(h);
-        if (!(fraction > 0.0)) {  // next to a turning point with a damper of a power
+        if (!(fraction > 0.0)) {  // next to a turning point with a power-law damper
             if (!powers_ || width < 1e-20) return end(kFailed, kNotFinite);
             return step(1e-4 * width);
         }
@@ -112,7 +112,7 @@ class Run {
         if (next_.kind != kNone && !done_) act();
     }
 
-    // Long steps on ground at rest where no samples are wanted.
+    // Makes long steps on resting ground if no samples are needed.
     double longest() const { return !trace_ && stretch_ >= m_.count ? static_cast<double>(end_ - stretch_) : 1.0; }
 
     double trusted(double h) const {
@@ -141,14 +141,15 @@ class Run {
     void offer(const double* c, int n, double fraction, double sign, double first, What kind, int device = 0, bool upwards = false) {
         double bound = 0.0;
         for (int k = 1; k < n; ++k) bound += std::fabs(c[k]);
-        if (first > bound) return;  // also for a shorter step
+        if (first > bound) return;  // also valid for a shorter step
         double power = fraction, scaled[kMost + 2];
         scaled[0] = first;
         for (int k = 1; k < n; ++k, power *= fraction) scaled[k] = sign * c[k] * power;
         const double x = first_fall(scaled, n);
         if (x > 1.0) return;
         const double rank = kind == kContact ? x - kTie : x, best = next_.kind == kContact ? next_.x - kTie : next_.x;
-        if (rank < best) next_ = {x, kind, device, upwards};  // a limit at the impact itself belongs to the impact
+        // a limit that is reached at the impact belongs to the impact
+        if (rank < best) next_ = {x, kind, device, upwards};
     }
 
     void find_event(double fraction) {
@@ -168,7 +169,7 @@ class Run {
         offer(rate, n - 1, fraction, direction_, direction_ * rate[0], kTurn);
     }
 
-    // Work of the ground, for a trace only, and of viscous forces.
+    // Adds the work of viscous forces, and for a trace the work of the ground.
     void add_work(double x, const double* push, const double* weight, int terms) {
         const int n = s_.n;
         for (std::size_t i = 0; i < d_.size(); ++i) {
@@ -196,7 +197,7 @@ class Run {
         work_ -= b_.sides[at()].unit * total;  // Eq. 351
     }
 
-    // Leaves or reaches a turning point without the damper, whose power has no series there.
+    // Leaves or reaches a turning point without the damper, since its power law has no series there.
     void pass_turn(double h, double width) {
         const double first = s_.theta[1], second = s_.theta[2], third = s_.theta[3];
         const bool reaches = first * second < 0.0;
@@ -249,7 +250,7 @@ class Run {
         head(side_);
     }
 
-    // Lets all restraints follow a direction of theta'.
+    // Sets the phase of all restraints for a direction of theta'.
     void head(int direction) {
         direction_ = direction;
         for (std::size_t i = 0; i < d_.size(); ++i) {
@@ -276,7 +277,7 @@ class Run {
         hold(limit);
     }
 
-    // Stays at a rotation until the moment exceeds friction.
+    // Keeps the rotation until the moment exceeds the friction.
     void hold(double limit) {
         const double still = acceleration(0.0, 0.0), by_push = acceleration(1.0, 0.0) - still, by_weight = acceleration(0.0, 1.0) - still;
         while (stretch_ < count_) {
@@ -309,7 +310,7 @@ class Run {
             const double from = k == stretch_ ? tau_ : 0.0, right = held.release(b_, 0, m_, k, from, scale_), left = held.release(b_, 1, m_, k, from, scale_);
             int side = right < left ? 1 : left < right ? -1 : 0;
             double x = std::min(right, left);
-            if (!side && right <= 1.0) {  // both at once
+            if (!side && right <= 1.0) {  // both sides at once
                 const double push = scale_ * m_.value_of(m_.push, k, right);
                 side = push > 0.0 ? -1 : push < 0.0 ? 1 : 0;
             }
@@ -398,7 +399,8 @@ class Run {
         peak();
         if (theta_ != 0.0 && rate_ == 0.0 && std::fabs(acceleration_now()) <= friction()) return end(kHeld, kGood);
         if (!may_overturn()) return end(r_.uplifts || r_.impacts ? kRocked : kNoUplift, kGood);
-        end_ = count_ + static_cast<std::int64_t>(std::ceil(kAfter / (q().p * m_.step)));  // the outcome follows on ground at rest
+        // the outcome is computed on resting ground
+        end_ = count_ + static_cast<std::int64_t>(std::ceil(kAfter / (q().p * m_.step)));
     }
     bool may_overturn() const { return theta_ != 0.0 && (side_ * rate_ > 0.0 || side_ * theta_ > q().alpha); }
 
@@ -446,7 +448,7 @@ class Run {
     double theta_ = 0.0, rate_ = 0.0, tau_ = 0.0, work_ = 0.0, last_theta_ = 0.0, last_rate_ = 0.0;
 
   public:
-    std::int64_t written = 0;  // samples
+    std::int64_t written = 0;  // number of samples
 };
 
 }  // namespace rocking::restrained

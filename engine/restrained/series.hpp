@@ -1,4 +1,4 @@
-// Taylor series of a body with restraints over one step, x = t / h from 0 to 1.
+// Taylor series of a body with restraints over one step; x = t / h is from 0 to 1.
 #pragma once
 #include "laws.hpp"
 
@@ -36,7 +36,8 @@ struct Terms {
 class Series {
   public:
     double theta[kMost + 1];
-    int n = 0;             // terms of theta; restraints have n - 1, elongations of lines n - 1 too
+    // number of terms of theta; restraints and elongations of straight restraints have n - 1 terms
+    int n = 0;
     bool ended = false;    // the last terms are below rounding
     Terms items[kDevices];
 
@@ -121,7 +122,7 @@ class Series {
         return moment + product(t.viscous, t.slope, k);
     }
 
-    double small_;  // of the last terms, over the angle
+    double small_;  // size of the last terms / angle
     double sines_[kMost + 1], cosines_[kMost + 1], half_sines_[kMost + 1], half_[kMost + 1], falls_[kMost + 1], arms_[kMost + 1];
 };
 

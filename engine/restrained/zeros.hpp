@@ -1,4 +1,4 @@
-// The first place on [0, 1] where a polynomial becomes negative.
+// The first position on [0, 1] at which a polynomial becomes negative.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -49,7 +49,8 @@ inline int zeros(const double* c, int n, double* x) {
     return total;
 }
 
-// A zero at the start is a touch; after a release only rounding can be negative there. 2 if there is none.
+// A zero at the start is a touch; after a release a negative value there can only be a rounding error. 2 if there is no
+// zero.
 inline double first_fall(const double* c, int n) {
     if (!(c[0] > 0.0)) {
         ++c, --n;
@@ -64,7 +65,7 @@ inline double first_fall(const double* c, int n) {
     double low = c[0], falls = 0.0;
     for (int k = 1; k < n; ++k) low += std::min(c[k], 0.0), falls += std::max(c[k], 0.0);
     if (low > 0.0 || n < 2) return kNone_;
-    if (c[1] < 0.0 && falls == 0.0) {  // falls all the way: one zero at most
+    if (c[1] < 0.0 && falls == 0.0) {  // the polynomial decreases everywhere: at most one zero
         double d[kTop];
         for (int k = 1; k < n; ++k) d[k - 1] = k * c[k];
         return value_at(c, n, 1.0) < 0.0 ? zero_between(c, d, n, 0.0, 1.0) : kNone_;

@@ -1,4 +1,4 @@
-// A body in space, and precomputed data of each possible edge and vertex of contact.
+// A body in 3D, and precomputed data of every possible edge and vertex of contact.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -20,12 +20,15 @@ struct Pivot {
     Vec at, axis, arm;
     double length = 0.0, about_axis = 0.0;
     Mat inertia, inverse;
-    Four torque[3], gyro[6];              // to the angular acceleration: of the field; of the products of velocities
+    // contributions to the angular acceleration: of the field, and of products of velocities
+    Four torque[3], gyro[6];
     int watched[2] = {-1, -1};            // vertices whose gaps may close first
-    Four gaps[3] = {}, ends[3] = {};      // coefficients of both gaps, height of the centre and cosine; and of the ends of an edge
-    double along = 0.0;                   // of the arm, along the edge
-    Vec level, lever;                     // of an edge: part of the arm across it, and axis x arm
-    double skew = 0.0, beside = 0.0;      // about its middle: transfer by gyroscopic moments between its ends, and the arm along
+    // gaps: coefficients of both gaps, of the height of the centre and of the cosine; ends: of the ends of an edge
+    Four gaps[3] = {}, ends[3] = {};
+    double along = 0.0;                   // component of the arm along the edge
+    Vec level, lever;                     // for an edge: part of the arm perpendicular to it, and axis x arm
+    // for the middle of an edge: force between its ends by gyroscopic moments, and the arm along the edge
+    double skew = 0.0, beside = 0.0;
     const double* kept = nullptr;         // moments after stage 2 of KED
 };
 
@@ -36,7 +39,7 @@ struct Body {
     int count = 0;
     bool round = false, usable = false;
     std::vector<Vec> vertices, edges, inward;
-    Positions ked, calibrated;            // k of a landing of the whole base, by two models
+    Positions ked, calibrated;            // k of a landing of the complete base, for two models
     Pivot face;
     std::vector<Pivot> vertex, edge;
 
@@ -90,7 +93,7 @@ inline Pivot rim_point(const Body& body, double x, double y) {
     return pivot;
 }
 
-// Fills in edges, faces and vertices; `kept` has the moments of each vertex, then those of each edge.
+// Computes edges, face and vertices; `kept` has the moments of every vertex, then those of every edge.
 inline void prepare(Body& body, const double* kept) {
     const int n = body.count;
     body.edges.resize(n), body.inward.resize(n), body.vertex.resize(n), body.edge.resize(n);

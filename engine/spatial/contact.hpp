@@ -1,4 +1,5 @@
-// Which points stay on the ground: complementarity over the few contact sets that a convex base allows, by listing.
+// Points that stay on the ground: complementarity, by trial of the few contact sets that are possible for a convex
+// base.
 #pragma once
 #include "law.hpp"
 
@@ -7,16 +8,17 @@ namespace ROCKING_ISA {
 
 constexpr double kRounding = 1e-9, kClosed = 1e-12, kFar = 1e300;
 constexpr double kStartRolling = 1e-11, kStopRolling = 1e-13;
-// sines of the tilt at which a rim that falls shows how near to flat it will pass, and below which that is a landing
+// sines of the tilt of a falling rim: the smallest tilt of the passage is predicted at kLanding; below kFlat it is a
+// landing
 constexpr double kLanding = 1e-3, kFlat = 1e-6;
 
 struct Choice {
     const Pivot* stance = nullptr;
     Vec velocity;
-    double push = 0.0;  // the smallest support: negative for a tensile force
+    double push = 0.0;  // the smallest support; negative for a tensile force
 };
 
-// Calls `attempt` for the contact sets that can stay, the larger ones first, until it accepts one.
+// Calls `attempt` for the possible contact sets, larger sets first, until it accepts a set.
 template <class Attempt>
 inline bool any_candidate(const Body& body, std::uint64_t touching, Attempt attempt) {
     if (touching == body.every() && attempt(body.face)) return true;
@@ -27,7 +29,7 @@ inline bool any_candidate(const Body& body, std::uint64_t touching, Attempt atte
     return false;
 }
 
-// The smallest support of a force with a moment about the pivot; negative for a tensile force.
+// The smallest support of a contact force with a moment about the pivot; negative for a tensile force.
 inline double least_support(const Body& body, const Pivot& stance, Vec force, Vec moment, Vec up) {
     const double normal = dot(force, up);
     const Vec arms = cross(up, moment);
@@ -51,7 +53,7 @@ inline double impulse_support(const Body& body, const State& s, const Pivot& sta
     return least_support(body, stance, push, body.inertia * (velocity - s.velocity) + cross(stance.arm, push), s.up);
 }
 
-// Smallest opening speed of a touching point that does not stay in contact.
+// Smallest opening speed of the touching points outside the contact set.
 inline double opening_speed(const Body& body, const Pivot& stance, Vec velocity, Vec up, std::uint64_t touching) {
     double slowest = kFar;
     for (int i = 0; i < body.count; ++i)
@@ -64,7 +66,8 @@ inline Vec plastic_after(const Body& body, const State& s, const Pivot& stance) 
     return stance.contact == kRest ? Vec{} : projected(body, s, stance);
 }
 
-// The largest contact set without tensile impulse or penetration; otherwise that with the smallest tension.
+// The largest contact set without tensile impulse or penetration; if there is none, the set with the smallest tensile
+// impulse.
 inline Choice landed(const Body& body, const State& s, std::uint64_t touching, int law, double coefficient) {
     Choice choice;
     const double scale = largest(s.velocity) * body.size;
@@ -102,7 +105,7 @@ inline Forces forces(const Body& body, const Pivot& stance, Vec velocity, Vec up
     return {rate, least_support(body, stance, force, moment, up)};
 }
 
-// The first contact set that stays when no gap opens with a speed, a preferred one before the others.
+// The first contact set that remains if no gap has an opening speed; `first` is tried before the other sets.
 inline Choice held(const Body& body, const State& s, std::uint64_t touching, const Pivot* first) {
     Choice choice;
     const double scale = norm(s.field);
@@ -123,7 +126,7 @@ inline Choice held(const Body& body, const State& s, std::uint64_t touching, con
     return choice;
 }
 
-// Contact if points that would close again at once stay closed.
+// Contact set in which points that would close again immediately stay closed.
 inline Choice settled(const Body& body, const State& s, const Choice& choice, std::uint64_t touching, double slow, bool weak) {
     if (body.round) {
         const bool flat = weak || choice.stance->contact == kRest;
@@ -136,7 +139,7 @@ inline Choice settled(const Body& body, const State& s, const Choice& choice, st
     return next.stance ? next : choice;
 }
 
-// The stance that initial conditions imply: the lowest of the touching points stay where they are.
+// The initial contact set: the touching points with the lowest velocity stay on the ground.
 inline const Pivot* started(const Body& body, Vec velocity, Vec up, std::uint64_t& touching) {
     double height[kMostVertices], rate[kMostVertices], low = kFar, slowest = kFar;
     for (int i = 0; i < body.count; ++i) {

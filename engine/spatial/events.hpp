@@ -81,13 +81,13 @@ void Run<D>::impact(int vertex) {
     }
     const bool flat = gap <= kFlat * body_.size && rate <= kClosed * body_.size * norm(velocity_);  // Eq. 328
     if (stance_->contact == kEdge || count > 2 || flat) closed = body_.every();
-    double height = 0.0;  // potential energy that is given up to lie flat
+    double height = 0.0;  // potential energy that is lost when the body is laid flat
     if (closed == body_.every()) height = potential(), flatten();
     if (at_once_ > kPiled) return stick(closed);
     land(landed(body_, state(), closed, static_cast<int>(row_.law), row_.coefficient), closed, height);
 }
 
-// Impacts that pile up at one moment leave the largest set of touching points at rest, pulled or not.
+// After too many impacts at one time the largest set of touching points stays at rest, even under a tensile force.
 template <int D>
 void Run<D>::stick(std::uint64_t closed) {
     const double before = kinetic();
@@ -105,7 +105,7 @@ void Run<D>::stick(std::uint64_t closed) {
 
 template <int D>
 void Run<D>::land(const Choice& landing, std::uint64_t touching, double height) {
-    const double before = kinetic() + (stance_->contact == kRolling ? potential() : height);  // a height given up is lost
+    const double before = kinetic() + (stance_->contact == kRolling ? potential() : height);  // the height is lost
     if (!landing.stance) return stop(kFailed, kNotFinite);
     stand(*landing.stance);
     velocity_ = landing.velocity;

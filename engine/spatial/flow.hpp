@@ -1,10 +1,10 @@
 // Taylor series of a step about a fixed point or edge. About a point, with the axes of the ground in axes of the body, X, Y, Z, and
 // G(t) = (Gx, Gy, Gz) gravity less the acceleration of the ground,
 //     X' = X x w, Y' = Y x w, Z' = Z x w,      I_A w' = rho x m (Gx X + Gy Y + Gz Z) - w x I_A w,
-// which is quadratic: coefficients follow from one another by sums of products, three components in a register.
-// About an edge e it is the equation of the plane for the angle phi turned since the start of the step,
+// The equations are quadratic: each coefficient follows from earlier coefficients by sums of products, three components
+// per register. About an edge e, the rotation angle phi since the start of the step follows from the plane equation
 //     I_e phi'' = m (P(t) cos phi - Q(t) sin phi),      P = (e x rho) . G, Q = (rho - e (e . rho)) . G,
-// with G in axes of the body at the start.
+// with G in body axes at the start.
 #pragma once
 #include "body.hpp"
 
@@ -13,13 +13,14 @@ namespace ROCKING_ISA {
 
 constexpr int kMostOrder = 16, kDegrees = 8;
 
-// Coefficients by power over a unit of time that is the step; velocities in radians a step.
+// Coefficients by power. The unit of time is the step. Velocities are in radians per step.
 struct Series {
     int order = 0;
     Four x[kMostOrder + 1], y[kMostOrder + 1], z[kMostOrder + 1], w[kMostOrder + 1];
 };
 
-// Coefficient k of a x w, the components one place ahead. The newest coefficients come last, so that nothing waits for them.
+// Coefficient k of a x w, with its components shifted by one. The newest coefficients are used last, so that no
+// operation waits.
 template <int N>
 inline Four turned(const Four* a, const Four* ar, const Four* w, const Four* wr, int k, double inverse) {
     if (k == 0) return a[0] * wr[0] - ar[0] * w[0];
@@ -34,7 +35,7 @@ inline Four turned(const Four* a, const Four* ar, const Four* w, const Four* wr,
     return (plus - minus) * four(inverse);
 }
 
-// `field` has the coefficients of G by power, axis by axis, over the step; `state` is X, Y, Z and the velocity times the step.
+// `field`: coefficients of G by power and axis, over the step; `state`: X, Y, Z and the velocity times the step.
 template <int N, int D>
 inline void series(const Pivot& pivot, const Four* state, double length, const double (*field)[3], Series& s) {
     Four x[N + 1], y[N + 1], z[N + 1], w[N + 1], xr[N + 1], yr[N + 1], zr[N + 1], wr[N + 1];
@@ -78,12 +79,12 @@ inline void series(const Pivot& pivot, const Four* state, double length, const d
     for (int k = 0; k <= N; ++k) s.x[k] = x[k], s.y[k] = y[k], s.z[k] = z[k], s.w[k] = w[k];
 }
 
-// Coefficients of cos phi, sin phi and phi' (radians a step).
+// Coefficients of cos phi, sin phi and phi' (radians per step).
 struct Turn {
     double cosine[kMostOrder + 1], sine[kMostOrder + 1], rate[kMostOrder + 1];
 };
 
-// `push` and `weight` are P and Q by power, times mass and the square of the step over I_e.
+// `push` and `weight`: P and Q by power, times mass * step^2 / I_e.
 template <int N, int D>
 inline void turn(double rate, const double* push, const double* weight, Turn& t) {
     t.cosine[0] = 1.0, t.sine[0] = 0.0, t.rate[0] = rate;
@@ -100,7 +101,7 @@ inline void turn(double rate, const double* push, const double* weight, Turn& t)
         }
         c += t.rate[0] * t.sine[k];
         s += t.rate[0] * t.cosine[k];
-        if (k > 0) s += t.rate[k];  // times the cosine 1 at the start; its sine is zero
+        if (k > 0) s += t.rate[k];  // times the initial cosine, 1; the initial sine is zero
         t.rate[k + 1] = bend * inverse, t.cosine[k + 1] = -c * inverse, t.sine[k + 1] = s * inverse;
     }
 }
@@ -111,7 +112,7 @@ inline Four value_at(const Four* c, int order, double at) {
     return total;
 }
 
-// Makes a part of the step its unit of time; velocities become radians per part.
+// Changes the unit of time to a part of the step; velocities are then in radians per part.
 inline void shorten(Series& s, double fraction) {
     double power = 1.0;
     for (int k = 0; k <= s.order; ++k, power *= fraction) {

@@ -5,11 +5,11 @@
 namespace rocking::spatial {
 namespace ROCKING_ISA {
 
-// Peaks and passages of a step.
+// Records the peak of a step, and the passage over the contact.
 template <int D>
 void Run<D>::keep(double start, double at, Vec before, Vec spin) {
     fastest_ = greater(fastest_, dot(velocity_, velocity_));
-    // the cosine of the tilt turns from falling to rising: the peak is inside
+    // the cosine of the tilt changes from falling to rising: the peak is in the step
     const bool falling = before.x * spin.y - before.y * spin.x < 0.0, rising = z_.x * velocity_.y - z_.y * velocity_.x > 0.0;
     if (falling && rising) follow(start, at, before);
     const double level = z_.x * z_.x + z_.y * z_.y;
@@ -41,7 +41,7 @@ void Run<D>::follow(double start, double at, Vec before) {
     if (level > peak_ && level >= before.x * before.x + before.y * before.y) peak_ = level, peak_time_ = start + top * step_.length;
 }
 
-// Whether the history has ended.
+// True if the history has ended.
 template <int D>
 void Run<D>::look_for_end() {
     if (z_.z <= 0.0) {

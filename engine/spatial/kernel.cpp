@@ -1,4 +1,4 @@
-// Histories of a table, row by row, for one instruction set; compiled once for each, with ROCKING_ISA naming it.
+// Histories of a table, row by row. Compiled once for each instruction set; ROCKING_ISA is the name of the set.
 #include "run.hpp"
 #include "table.hpp"
 

@@ -1,4 +1,4 @@
-// Restitution: one law per function. All of them return the angular velocity about the new pivot.
+// Restitution laws, one per function. Every law returns the angular velocity about the new pivot.
 #pragma once
 #include <limits>
 
@@ -9,25 +9,25 @@ namespace ROCKING_ISA {
 
 enum Law : int { kHousner = 0, kHorizontal = 1, kFixed = 2, kKed = 3, kKedPoint = 4, kCalibrated = 5 };
 
-// A body at an instant: a point at rest on the ground, angular velocity, vertical, gravity less the acceleration of the
-// ground, and of a body on an edge the way to its other end, in its own axes.
+// State of a body in body axes: a point at rest on the ground, angular velocity, vertical direction, gravity minus the
+// acceleration of the ground; for a body on an edge, the vector to the other end of the edge.
 struct State {
     Vec pivot, velocity, up, field, along;
 };
 
-// About a pivot, the velocity that has a given angular momentum; about an edge only its component along that counts.
+// Angular velocity with a given angular momentum about a pivot; for an edge, only the component along the edge is used.
 inline Vec with_momentum(const Pivot& onto, Vec momentum) {
     if (onto.contact == kEdge) return dot(onto.axis, momentum) / onto.about_axis * onto.axis;  // Eq. 89
     return onto.inverse * momentum;
 }
 
-// Plastic impact without slip: the projection of the velocities in the kinetic metric.
+// Plastic impact without slip: projection of the velocities in the kinetic metric.
 inline Vec projected(const Body& body, const State& s, const Pivot& onto) {
     const Vec speed = cross(s.velocity, body.centre - s.pivot);
     return with_momentum(onto, body.inertia * s.velocity + body.mass * cross(onto.arm, speed));  // Eq. 88
 }
 
-// Only the horizontal velocities of the particles remain.
+// Impact after which the particles keep only their horizontal velocities.
 inline Vec level_only(const Body& body, const State& s, const Pivot& onto) {
     const double half = 0.5 * (body.inertia.a.x + body.inertia.b.y + body.inertia.c.z);
     const Mat second = diagonal(half) - body.inertia;  // integral of x x^T about the centre
@@ -36,7 +36,7 @@ inline Vec level_only(const Body& body, const State& s, const Pivot& onto) {
     return with_momentum(onto, momentum + body.mass * cross(onto.arm, level));  // Eq. 102
 }
 
-// Twice the energy that the three stages of KED leave, from the moments of the landing stance in body axes.
+// Twice the energy after the three stages of KED, from the moments of the landing stance in body axes.
 inline double twice_kept(const State& s, const Pivot& onto) {
     const Vec jump = cross(s.velocity, onto.at - s.pivot), drift = jump - dot(s.up, jump) * s.up;
     const double u[3] = {drift.x, drift.y, drift.z}, z[3] = {s.up.x, s.up.y, s.up.z};
@@ -62,7 +62,7 @@ inline Vec scaled_to(const Pivot& onto, Vec direction, double twice) {
     return left > 0.0 ? std::sqrt(greater(twice, 0.0) / left) * direction : direction;  // Eq. 21
 }
 
-// Momentum about the point where the impulse acts, which lies behind the new pivot by (1 - k)/2 of the step.
+// Angular velocity from the momentum about the impulse point, which is (1 - k)/2 of the step behind the new pivot.
 inline Vec about_impulse(const Body& body, const State& s, const Pivot& onto, Vec step, double k) {
     const Vec back = 0.5 * (1.0 - k) * body.mass * step, speed = cross(s.velocity, body.centre - s.pivot);
     const Vec momentum = body.inertia * s.velocity + body.mass * cross(onto.arm, speed) + cross(back, speed);
@@ -70,18 +70,19 @@ inline Vec about_impulse(const Body& body, const State& s, const Pivot& onto, Ve
     return inverse(onto.inertia + diagonal(dot(back, onto.arm)) - outer(onto.arm, back)) * momentum;  // Eq. 103
 }
 
-// highest: largest k; 1 is the new pivot, beyond which the contact force would be tensile.
+// highest: largest k; k = 1 is the new pivot, and for larger k the contact force would be tensile.
 inline Vec by_position(const Body& body, const State& before, const Pivot& onto, const Positions& positions, double highest) {
     State s = before;
     const double length = dot(s.along, s.along);
-    if (length > 0.0) {  // of an edge the point that is nearest to the new stance
+    if (length > 0.0) {  // for an edge, use the point of the edge nearest to the new stance
         const Vec way = onto.at + 0.5 * onto.length * onto.axis - s.pivot;
         s.pivot = s.pivot + lesser(greater(dot(way, s.along) / length, 0.0), 1.0) * s.along;
     }
     Vec step = onto.at - s.pivot;
     if (onto.contact == kEdge) step = step - dot(step, onto.axis) * onto.axis;
     const Vec speed = cross(s.velocity, body.centre - s.pivot);
-    const double k = largest(step) > 1e-12 * body.size ? lesser(positions.at(step), highest) : 1.0;  // 1 where there is no step
+    // 1 if the step has no length
+    const double k = largest(step) > 1e-12 * body.size ? lesser(positions.at(step), highest) : 1.0;
     Vec velocity = about_impulse(body, s, onto, step, k);
     if (k < 1.0 && dot(s.up, cross(velocity, onto.arm) - speed) < 0.0) velocity = about_impulse(body, s, onto, step, 1.0);
     const double first = dot(s.velocity, body.inertia * s.velocity) + body.mass * dot(speed, speed), left = dot(velocity, onto.inertia * velocity);

@@ -1,4 +1,4 @@
-// Position k of the impulse of a landing of the whole base, by the azimuth of the step.
+// Position k of the impulse at a landing of the complete base, as a function of the azimuth of the step.
 #pragma once
 #include <cmath>
 
@@ -7,9 +7,9 @@
 namespace rocking::spatial {
 namespace ROCKING_ISA {
 
-constexpr int kInterval = 35;  // numbers of an interval: first and last azimuth, Chebyshev coefficients
+constexpr int kInterval = 35;  // numbers per interval: first and last azimuth, Chebyshev coefficients
 
-// Intervals of azimuth, one after another; none where the model cannot be applied.
+// List of intervals of azimuth; empty if the model cannot be applied.
 struct Positions {
     const double* rows = nullptr;
     int intervals = 0;

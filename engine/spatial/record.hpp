@@ -35,7 +35,7 @@ struct Result {
 // Attitude as the axes of the ground in axes of the body, angular velocity in axes of the body.
 struct Sample {
     double time;
-    int kind, contact, number;  // -1: end of a step
+    int kind, contact, number;  // number -1: end of a step
     double before, after;
     Vec x, y, z, velocity;
 };

@@ -1,4 +1,4 @@
-// Loss of contact: forces at a point and at both ends of an edge, as series of the time within a step.
+// Loss of contact: forces at a point and at both ends of an edge, as series of the time in a step.
 #pragma once
 #include "contact.hpp"
 #include "zeros.hpp"
@@ -6,14 +6,15 @@
 namespace rocking::spatial {
 namespace ROCKING_ISA {
 
-// A step with quantities of its series: by power, gaps of two vertices, height of the centre, cosine of the tilt.
+// A step with series: coefficients of the gaps of two vertices, of the height of the centre, and of the cosine of the
+// tilt.
 struct Step {
     double length = 0.0;
     Series s;
     Four c[kMostOrder + 1];
-    double field[kMostOrder + 1][3];  // gravity less the acceleration of the ground, by power, axes of the ground
-    Vec heading;                      // of the edge, on the ground
-    double least_normal = 0.0;        // a bound of the vertical force per unit mass
+    double field[kMostOrder + 1][3];  // gravity minus the acceleration of the ground, by power, axes of the ground
+    Vec heading;                      // direction of the edge on the ground
+    double least_normal = 0.0;        // lower bound of the vertical force per unit mass
 
     Vec up(int k) const { return vec(s.z[k]); }
     double spin(int k, Vec axis) const { return dot(vec(s.w[k]), axis) / length; }
@@ -26,7 +27,7 @@ inline void multiply(const double* a, const double* b, int order, double* produc
     }
 }
 
-// Vertical force per unit mass, up to the order of the series less two.
+// Vertical force per unit mass; its order is that of the series minus two.
 inline void normal_force(const Step& step, double* force) {
     const double rate = 1.0 / (step.length * step.length);
     for (int k = 0; k + 2 <= step.s.order; ++k) force[k] = (k + 2) * (k + 1) * rate * step.c[k + 2][2] - step.field[k][2];  // Eq. 96
@@ -52,7 +53,7 @@ inline void second_force(const Pivot& edge, const Step& step, double* force) {
         force[k] = (part[2][k] - part[0][k] - part[1][k] - step.field[k][2] * edge.along) / edge.length;  // Eq. 97
 }
 
-// Acceleration of the gap of an end of an edge if the body turned about the other end alone.
+// Acceleration of the gap of one end of an edge, if the body rotated about the other end only.
 inline void opening_of(const Body& body, const Pivot& edge, const Step& step, int which, double* opening) {
     const int top = step.s.order - 2;
     const Vec stays = which ? edge.at : edge.at + edge.length * edge.axis, arm = body.centre - stays;
@@ -78,10 +79,10 @@ inline void opening_of(const Body& body, const Pivot& edge, const Step& step, in
 
 struct Release {
     double at = kNone;
-    int which = -1;  // end of the edge, -1 for all contact
+    int which = -1;  // end of the edge, -1 if all contact is lost
 };
 
-// Time at which a force is tensile while its gap opens.
+// Time at which the force at an end is tensile while the gap of the end opens.
 inline double opens(const Body& body, const Pivot& edge, const Step& step, int which, const double* force) {
     const int top = step.s.order - 2;
     double opening[kMostOrder + 1];

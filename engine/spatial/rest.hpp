@@ -1,4 +1,4 @@
-// Duration of rest: until the centre of pressure reaches the border of the base.
+// Duration of rest: time at which the centre of pressure reaches the border of the base.
 #pragma once
 #include "contact.hpp"
 #include "zeros.hpp"
@@ -6,7 +6,7 @@
 namespace rocking::spatial {
 namespace ROCKING_ISA {
 
-// Accelerations over stretches of time by power, over a unit of time that is the stretch: data[stretch][power][axis].
+// Accelerations as polynomials: data[stretch][power][axis]; the unit of time is the stretch.
 struct Motion {
     const double *times = nullptr, *data = nullptr;
     std::int64_t count = 0;
@@ -22,7 +22,7 @@ inline void shift(double* c, int order, double to, double width) {
 struct Uplift {
     std::int64_t stretch = -1;
     double tau = 0.0;
-    int edges = 0, first = -1, second = -1;  // that the centre of pressure crosses just then
+    int edges = 0, first = -1, second = -1;  // edges that the centre of pressure crosses at that time
 };
 
 constexpr double kSame = 1e-11, kWhole = 1.0 - 1e-12;
@@ -42,7 +42,7 @@ public:
         }
     }
 
-    // First zero, after a time within a stretch, of functions that are positive at rest; stretch -1 if there is none.
+    // First zero, after time tau of a stretch, of functions that are positive at rest; stretch -1 if there is no zero.
     Uplift next(std::int64_t stretch, double tau) const {
         for (; stretch < motion_.count; ++stretch, tau = 0.0) {
             if (tau == 0.0 && surely_held(stretch)) continue;
@@ -93,7 +93,7 @@ private:
             weight[d] = scale_ * a[3 * d + 2] + (d == 0 ? gravity_ : 0.0);
             arm[0][d] = body_.centre.x * weight[d] - body_.centre.z * (x_.x * ax + y_.x * ay);
             arm[1][d] = body_.centre.y * weight[d] - body_.centre.z * (x_.y * ax + y_.y * ay);
-            if (row == 1) c[d] = weight[d] * body_.size;  // the ground must push
+            if (row == 1) c[d] = weight[d] * body_.size;  // the contact force must be compressive
         }
         const double square = body_.radius * body_.radius;
         for (int i = 0; row == 0 && i <= D; ++i)
@@ -119,7 +119,7 @@ private:
         if (least < -same) return uplift;
         for (int e = 0; e < rows_; ++e) {
             const double at = c[e][0] > 0.0 ? first_fall(c[e], order_) : (falls_at_once(c[e], order_) ? 0.0 : kNone);
-            if (at < kWhole) first = lesser(first, at);  // at the end the next stretch decides
+            if (at < kWhole) first = lesser(first, at);  // a zero at the end belongs to the next stretch
         }
         if (first == kFar) return {};
         for (int e = 0; e < rows_ && !body_.round; ++e) {
@@ -138,7 +138,7 @@ private:
     int order_, rows_;
 };
 
-// Contact of a body after uplift from rest; none for a tensile force.
+// Contact set after uplift from rest; null if the force is tensile.
 inline const Pivot* lifted(const Body& body, const State& s, const Uplift& uplift) {
     if (uplift.edges == 1) return &body.edge[uplift.first];
     if (uplift.edges == 2)

@@ -1,7 +1,7 @@
-// Rolling of a round base on its rim without slip. With n the direction of the horizontal part of Z and h one over its
-// length, the lowest point of the rim is s = -b n, and rho = C - s changes as the body rolls:
+// Rolling of a round base on its rim without slip. n: direction of the horizontal part of Z; h: 1 / length of this
+// part. The lowest point of the rim is s = -b n, and rho = C - s changes during rolling:
 //     I_s w' = -w x I_s w - m rho x (w x rho') + m rho x R^T G,  rho' = b n',  n' = h (t . Z') t,  h' = -h^2 (n . Z'),
-// with I_s the inertia about the contact and t = (-n_y, n_x).
+// with the inertia I_s about the contact and t = (-n_y, n_x).
 #pragma once
 #include "release.hpp"
 
@@ -10,7 +10,7 @@ namespace ROCKING_ISA {
 
 class Rolling {
 public:
-    // The axes of the ground and the velocity at the start in `step`; fills in the series of the step.
+    // Computes the series of a step from the axes of the ground and the velocity at its start.
     Rolling(const Body& body, const Vec* axes, Vec velocity, int order, Step& step) : body_(body), step_(step), length_(step.length) {
         for (int i = 0; i < 3; ++i) axis_[i][0] = axes[i];
         w_[0] = velocity;
@@ -113,12 +113,13 @@ inline void read_rolling(const Body& body, Step& step) {
     }
 }
 
-// True if the tilt is so small that loss of contact is negligible: contact then persists, and `held` has its duration.
+// True if the tilt is so small that loss of contact is negligible. Contact then persists, and `held` counts its
+// duration.
 inline bool nearly_flat(const Body& body, Vec up) {
     return std::sqrt(up.x * up.x + up.y * up.y) * body.centre.z < 0.01 * body.radius;
 }
 
-// When a round base begins to roll, passes kLanding, or lies flat; landing: whether it falls flat.
+// Time at which a round base starts to roll, passes kLanding, or is flat. landing: true if the base falls flat.
 inline double rim_event(const Body& body, const Pivot& stance, const Step& step, bool landing) {
     double lean[kMostOrder + 1], steep[kMostOrder + 1];
     const int order = step.s.order;
@@ -132,7 +133,7 @@ inline double rim_event(const Body& body, const Pivot& stance, const Step& step,
         return first_zero(lean, order, false, 0.0);
     }
     steep[0] += landing ? 2.0 * kLanding : kStartRolling;
-    // after uplift from rest the tilt grows with the cube of time: lower powers are rounding
+    // after uplift from rest the tilt grows with the cube of time; coefficients of lower powers are rounding errors
     const double pull = norm({step.field[0][0], step.field[0][1], step.field[0][2]});
     const double floor = 0.25 * kSlowOpening * pull * step.length * step.length / body.radius;
     return lesser(first_zero(lean, order, std::fabs(lean[0]) < kNothing, floor), first_zero(steep, order, false, 0.0));

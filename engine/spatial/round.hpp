@@ -1,4 +1,4 @@
-// A history of a body with a round base: on a point of its rim while it is nearly flat, rolling otherwise.
+// A history of a body with a round base: contact at one point of the rim if the body is nearly flat, otherwise rolling.
 #pragma once
 #include "run.hpp"
 
@@ -21,7 +21,7 @@ void Run<D>::start_round() {
     if (stance_->contact == kRest) flatten();
 }
 
-// One step on the rim; `order` of its series.
+// One step on the rim; `order`: order of its series.
 template <int D>
 void Run<D>::step_on_rim(int order, double angle) {
     if (stance_->contact == kRolling) {
@@ -43,7 +43,7 @@ void Run<D>::step_on_rim(int order, double angle) {
     if (held) letting = kNone;
     const double at = lesser(1.0, lesser(letting, turn));
     arrive(at, whole_ && at == 1.0);
-    if (z_.z <= 0.0) return finish_step();  // it lies before any other event
+    if (z_.z <= 0.0) return finish_step();  // the body lies on the ground; other events cannot follow
     if (turn == at) return change_on_rim();
     if (letting == at) return released(-1);
     if (held) made_.held += at * step_.length;
@@ -51,7 +51,7 @@ void Run<D>::step_on_rim(int order, double angle) {
     finish_step();
 }
 
-// True if a round base with nearly no energy remains flat, because rolling alone never ends.
+// True if a round base with nearly no energy stays flat; without this rule rolling would never end.
 template <int D>
 bool Run<D>::lies_down() const {
     if (!(nearly_flat(body_, z_) && calm())) return false;
@@ -67,7 +67,7 @@ void Run<D>::change_on_rim() {
         return guard();
     }
     if (rolls && sine > 0.5 * kLanding) {
-        // a rigid rim rolls on at any distance from the flat position; at zero distance it has an impact
+        // a rigid rim continues to roll past the flat position; only at zero distance from it there is an impact
         const Vec falls = cross(z_, velocity_);
         const double past = std::fabs(z_.x * falls.y - z_.y * falls.x);  // Eq. 327
         if (past < kFlat * std::sqrt(falls.x * falls.x + falls.y * falls.y) && z_.x * falls.x + z_.y * falls.y < 0.0)
@@ -76,7 +76,8 @@ void Run<D>::change_on_rim() {
     }
     landing_ = false;
     if (rolls) {
-        stance_ = &rim(stance_->at.x, stance_->at.y, kVertex);  // so flat that the point of contact is fixed
+        // the tilt is so small that the point of contact is fixed
+        stance_ = &rim(stance_->at.x, stance_->at.y, kVertex);
         return guard();
     }
     flatten();

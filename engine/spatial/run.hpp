@@ -1,4 +1,4 @@
-// One history: steps to the end of each sample, or to the first event before it.
+// One history: steps to the end of every sample, or to an earlier event.
 #pragma once
 #include "record.hpp"
 #include "rolling.hpp"
@@ -9,7 +9,7 @@ namespace ROCKING_ISA {
 constexpr double kPull = 1e-9, kPatience = 300.0;
 constexpr int kStuck = 100, kPiled = 60, kUpkeep = 16, kHalvings = 60;
 
-// Angles 1.5 rate h below which a series of an order is exact to the tolerance: x^(n + 1) / (n + 1)! = tolerance.
+// Largest angles 1.5 rate h at which the series of an order reach the tolerance: x^(n + 1) / (n + 1)! = tolerance.
 struct Orders {
     static constexpr int count = 5;
     static constexpr int order[count] = {4, 6, 8, 12, 16};
@@ -86,7 +86,7 @@ private:
         at_once_ = time_ <= moment_ ? at_once_ + 1 : 0;
         moment_ = time_;
         if (at_once_ > kStuck || made_.events > set_.most_events) return stop(kFailed, kTooManyEvents);
-        // a base with many vertices may have no step without impact: the outcome is checked here too
+        // a base with many vertices may have no step without impact, so the outcome is also checked here
         if (!done_ && time_ >= horizon_ && stance_->contact != kRest) look_for_end();
     }
 
@@ -101,7 +101,7 @@ private:
         const double c = x_.x + y_.y, s = y_.x - x_.y, size = 1.0 / std::sqrt(c * c + s * s);
         x_ = {size * c, -size * s, 0.0}, y_ = {size * s, size * c, 0.0}, z_ = {0.0, 0.0, 1.0};
     }
-    // Turns by the smallest angle so that an axis of the body is horizontal.
+    // Rotates the body by the smallest angle that makes an axis of the body horizontal.
     void level(Vec axis) {
         const double sine = dot(z_, axis), cosine = std::sqrt(1.0 - sine * sine);
         if (sine == 0.0) return;
@@ -137,7 +137,7 @@ private:
     }
     State state() const { return {stance_->at, velocity_, z_, field_now(), stance_->length * stance_->axis}; }
     double kinetic() const { return 0.5 * dot(velocity_, stance_->inertia * velocity_); }
-    // True if nearly no energy remains; a falling body has less than zero, and is not at rest.
+    // True if nearly no energy remains. A falling body has negative energy, and is not at rest.
     bool calm() const { return kinetic() + std::fabs(potential()) < weak_; }
     double potential() const { return body_.mass * set_.gravity * rise(body_, z_, stance_->at); }
 
@@ -158,11 +158,12 @@ private:
 
     Step step_;
     Turn turn_;
-    bool spelled_ = true;  // true if the series of the axes exist, which a step about an edge rarely needs
+    bool spelled_ = true;  // true if the series of the axes exist; a step about an edge rarely needs them
     bool whole_ = false, to_horizon_ = false;
     bool landing_ = false;  // true if a round base falls flat
-    bool sticks_ = false;  // true after accumulated impacts on this edge, so that no end of it is released
-    double peak_ = 0.0, peak_time_ = 0.0, fastest_ = 0.0, over_time_ = kNan;  // the peak as the square of its sine
+    bool sticks_ = false;  // true after accumulated impacts on this edge; then no end of the edge is released
+    // peak_: square of the sine of the peak tilt
+    double peak_ = 0.0, peak_time_ = 0.0, fastest_ = 0.0, over_time_ = kNan;
     int over_contact_ = -1, over_number_ = -1;
     Pivot rims_[2];
     int used_ = 0;

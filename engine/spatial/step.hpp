@@ -26,7 +26,8 @@ template <int D>
 void Run<D>::move() {
     while (stretch_ < motion_.count && motion_.times[stretch_ + 1] <= time_) ++stretch_;
     double rate = body_.p + norm(velocity_);
-    if (stance_->contact == kRolling) {  // at most half of the tilt to flat, where the contact rolls along the rim
+    // move at most half of the tilt towards flat, because the contact then moves fast along the rim
+    if (stance_->contact == kRolling) {
         const Vec turning = cross(z_, velocity_);
         rate += 2.0 * std::sqrt((turning.x * turning.x + turning.y * turning.y) / (z_.x * z_.x + z_.y * z_.y));
     }
@@ -81,14 +82,14 @@ void Run<D>::locate() {
     }
     Release letting = first_release(body_, *stance_, step_);
     sticks_ = sticks_ && letting.which >= 0;
-    if (sticks_) {  // no end is released
+    if (sticks_) {  // no end of the edge is released
         double push[kMostOrder + 1];
         normal_force(step_, push);
         letting = {first_zero(push, step_.s.order - 2, false, 0.0), -1};
     }
     const double at = lesser(1.0, lesser(contact, letting.at));
     arrive(at, whole_ && at == 1.0);
-    if (z_.z <= 0.0) return finish_step();  // it lies before anything else happens
+    if (z_.z <= 0.0) return finish_step();  // the body lies on the ground; other events cannot follow
     if (contact == at) return impact(vertex);
     if (letting.at == at) return released(letting.which);
     if (stance_->contact == kEdge) {
@@ -101,7 +102,7 @@ void Run<D>::locate() {
     finish_step();
 }
 
-// Returns true if no event is possible within the step, by cheap bounds on its series.
+// True if cheap bounds on the series exclude every event in the step.
 template <int D>
 template <int N>
 bool Run<D>::advance(double angle) {
@@ -143,7 +144,8 @@ bool Run<D>::advance_on_edge(double angle) {
     ROCKING_EACH_TERM
     for (int k = N; k >= 0; --k) step_.c[k] = four(turn_.cosine[k]) * still - four(turn_.sine[k]) * turning;
     if (!nothing_near<N>()) return false;
-    // both ends push if their difference, from moments about the middle of the edge, stays below their sum
+    // both ends are compressive if the bound of their difference (moments about the middle of the edge) is below their
+    // sum
     const double inverse = 1.0 / (step_.length * step_.length), fastest = std::fabs(rate) + strength;
     const double height = std::fabs(step_.c[0][2]) + fastest * norm(edge.level);
     const double apart = edge.skew * (strength + fastest * fastest) * inverse + height * across + heavy * edge.beside;
@@ -152,7 +154,7 @@ bool Run<D>::advance_on_edge(double angle) {
     return ends_hold();
 }
 
-// Shortens a step whose series has not converged; false where it is no longer finite.
+// Shortens a step whose series has not converged; false if the series is not finite.
 template <int D>
 bool Run<D>::within_trust(double size, double angle, int order) {
     if (!(size < 1e100)) {
@@ -164,7 +166,7 @@ bool Run<D>::within_trust(double size, double angle, int order) {
     return true;
 }
 
-// True if the contact force is compressive for certain and no gap closes.
+// True if the bounds prove that the contact force is compressive and no gap closes.
 template <int D>
 template <int N>
 bool Run<D>::nothing_near() {
@@ -190,7 +192,7 @@ bool Run<D>::nothing_near() {
     return clear;
 }
 
-// Series of the axes from those of a turn about an edge.
+// Computes the series of the axes from the series of a rotation about an edge.
 template <int D>
 void Run<D>::spell_out() {
     if (spelled_) return;
@@ -233,7 +235,7 @@ void Run<D>::shorten_step(double fraction) {
     whole_ = to_horizon_ = false;
 }
 
-// Moves to a time within the step.
+// Moves the state to a time in the step.
 template <int D>
 void Run<D>::arrive(double at, bool ends_stretch) {
     const Series& s = step_.s;
@@ -243,7 +245,7 @@ void Run<D>::arrive(double at, bool ends_stretch) {
         x_ = vec(value_at(s.x, s.order, at)), y_ = vec(value_at(s.y, s.order, at)), z_ = vec(value_at(s.z, s.order, at));
         velocity_ = rate * vec(value_at(s.w, s.order, at));
     } else {
-        double sine = 0.0, cosine = 0.0, speed = 0.0;  // the whole step
+        double sine = 0.0, cosine = 0.0, speed = 0.0;  // rotation over the complete step
         for (int k = s.order; k >= 0; --k) sine += turn_.sine[k], cosine += turn_.cosine[k], speed += turn_.rate[k];
         const Vec axis = stance_->axis;
         const auto turned = [&](Vec v) { return cosine * v + (1.0 - cosine) * dot(axis, v) * axis - sine * cross(axis, v); };
@@ -251,7 +253,8 @@ void Run<D>::arrive(double at, bool ends_stretch) {
         time_ = start + step_.length;
         velocity_ = rate * speed * axis;
         const bool turns = before.x * spin.y - before.y * spin.x < 0.0 && z.x * velocity_.y - z.y * velocity_.x > 0.0;
-        if (turns || (leaning_over(body_, z, stance_->at) > 0.0 && std::isnan(over_time_))) spell_out();  // of the old axes
+        // series of the axes before the step
+        if (turns || (leaning_over(body_, z, stance_->at) > 0.0 && std::isnan(over_time_))) spell_out();
         x_ = x, y_ = y, z_ = z;
     }
     if (stance_->contact == kRolling) stance_ = &rim(-z_.x, -z_.y, kRolling);

@@ -8,24 +8,27 @@ namespace rocking::spatial {
 
 // Numbers per interval of the impulse position k: first azimuth, last azimuth, Chebyshev coefficients.
 constexpr int kPosition = 35;
-// of a body: mass, p, size, lift, radius, centre (3), inertia (9); of a row: coefficient, scale, horizon, attitude (4), velocity (3)
+// body: mass, p, size, lift, radius, centre (3), inertia (9); row: coefficient, scale, horizon, attitude (4), velocity
+// (3)
 constexpr int kBodyNumbers = 17, kBodyPlaces = 6, kRowNumbers = 10, kRowChoices = 3;
 // peak tilt, its time, peak spin, overturning time, direction, first uplift, end, held, lost energy
 constexpr int kResults = 9;
-// outcome, status, contact and number over which it fell, impacts, uplifts, events, steps, whether it still rocks
+// outcome, status, contact and its number at overturning, impacts, uplifts, events, steps, 1 if the body still rocks
 constexpr int kCounts = 9;
 // time, kind, contact, number, energies before and after, three axes, velocity
 constexpr int kSample = 18;
 
 struct Numbers {
-    const double* bodies;             // by body
-    const std::int64_t* corners;      // first vertex and number of vertices, first interval of k and number of intervals by two models, by body
+    const double* bodies;             // rows by body
+    // by body: first vertex, number of vertices; for two models first interval of k, number of intervals
+    const std::int64_t* corners;
     const double* vertices;           // x and y
     const double* kept;               // moments by vertex and edge of all bodies, or null
-    const double* positions;          // k of landings of the whole base, interval by interval of all bodies and models
+    const double* positions;          // k of landings of the complete base: list of intervals of all bodies and models
     std::int64_t body_count, vertex_count, position_count;
     int degree;
-    const std::int64_t* places;       // first number of times, first of accelerations, and stretches, by motion
+    // by motion: index of its first time, index of its first acceleration, number of stretches
+    const std::int64_t* places;
     const double *times, *accelerations;
     std::int64_t motion_count, time_count, acceleration_count;
 };

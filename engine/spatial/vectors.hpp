@@ -1,4 +1,4 @@
-// Vectors of space: three numbers for events, and four numbers in one register for the steps.
+// Vectors in 3D: three numbers for events, and four numbers in one register for the steps.
 #pragma once
 #include <cmath>
 

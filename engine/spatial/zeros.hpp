@@ -1,4 +1,4 @@
-// Where a series of the time within a step first falls below zero.
+// First time in a step at which a series becomes negative.
 #pragma once
 #include "../roots.hpp"
 #include "flow.hpp"
@@ -20,7 +20,7 @@ inline double slope_of(const double* c, int order, double at) {
     return total;
 }
 
-// Of a polynomial that starts above zero: its first fall in (0, 1], or kNone.
+// First change to negative values in (0, 1] of a polynomial with a positive start; kNone if there is none.
 inline double first_fall(const double* c, int order) {
     double residual = c[0], padded[kMostOrder + 1] = {};
     for (int k = 1; k <= order; ++k) residual += lesser(c[k], 0.0);
@@ -31,7 +31,7 @@ inline double first_fall(const double* c, int order) {
     return rocking::ROCKING_ISA::first_zero<kMostOrder>(padded);
 }
 
-// `started`: True if the gap has just opened; the zero at its start is ignored. Coefficients up to `floor` count as 0.
+// `started`: true if the gap has just opened; its initial zero is ignored. Coefficients up to `floor` count as 0.
 inline double first_zero(const double* c, int order, bool started, double floor) {
     double most = 0.0;
     for (int k = 0; k <= order; ++k) most = greater(most, std::fabs(c[k]));
