@@ -84,7 +84,7 @@ def test_killed_rounds_lose_nothing(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("variant", "sentences"),
     # recorded first, a shard is either missing at the kill or not yet whole
-    [("in-place", ("cut short",)), ("record-first", ("are recorded, and have no shard", "cut short"))],
+    [("in-place", ("incomplete",)), ("record-first", ("are recorded, and have no shard", "incomplete"))],
 )
 def test_careless_campaigns_are_caught(tmp_path: Path, variant: str, sentences: tuple[str, ...]) -> None:
     """Negative control: shards written in place, and records that come before shards, fail the same check."""

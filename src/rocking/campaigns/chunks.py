@@ -31,7 +31,7 @@ def _kinds(header: Any) -> dict[str, np.dtype[Any]]:
     try:
         return {name: np.dtype(kind) for name, kind in header["columns"]}
     except (SyntaxError, TypeError, ValueError) as error:
-        raise CampaignDamagedError("its header cannot be read") from error
+        raise CampaignDamagedError("the header of the shard is not readable") from error
 
 
 DEFAULT_CHUNK = 65536
@@ -135,7 +135,7 @@ def range_of(data: bytes) -> tuple[int, int]:
     header = _read_header(data, _payload_at(data))
     ends = header.get("first"), header.get("last")
     if not all(isinstance(end, int) for end in ends):
-        raise CampaignDamagedError("its header contains no range of histories")
+        raise CampaignDamagedError("the header of the shard contains no range of histories")
     return ends
 
 
@@ -147,21 +147,23 @@ def unpack(data: bytes, chunk: Chunk, sealed: str | None = None) -> Arrays:
     header = _read_header(data, offset)
     if header.get("name") != chunk.name:
         raise CampaignDamagedError(
-            "it holds another chunk, {name}, not {expected}", name=str(header.get("name"))[:12],
+            "the shard contains chunk {name}, but chunk {expected} is required", name=str(header.get("name"))[:12],
             expected=chunk.name[:12],
         )  # fmt: skip
     if sealed is not None and seal(data) != sealed:
-        raise CampaignDamagedError("it is valid, but not the recorded one")
+        raise CampaignDamagedError("the shard is valid, but its checksum differs from the recorded checksum")
     return _columns(data, offset, chunk, header)
 
 
 def _columns(data: bytes, offset: int, chunk: Chunk, header: Any) -> Arrays:
     count, arrays = chunk.last - chunk.first, {}
     if header.get("first") != chunk.first or header.get("last") != chunk.last or not header.get("columns"):
-        raise CampaignDamagedError("its header does not fit its name")
+        raise CampaignDamagedError("the header of the shard does not match the chunk")
     kinds = _kinds(header)
     if (due := offset + count * width(kinds) + _SEAL) != len(data):
-        raise CampaignDamagedError("it has {count} bytes, {expected} are due", count=len(data), expected=due)
+        raise CampaignDamagedError(
+            "the shard has {count} bytes, but {expected} bytes are required", count=len(data), expected=due
+        )
     for name, kind in kinds.items():
         arrays[name] = np.frombuffer(data, kind, count, offset).astype(kind.newbyteorder("="), copy=False)
         offset += count * kind.itemsize
@@ -171,18 +173,20 @@ def _columns(data: bytes, offset: int, chunk: Chunk, header: Any) -> Arrays:
 def _payload_at(data: bytes) -> int:
     """Check the first bytes; return the offset of the columns."""
     if len(data) < _LENGTHS.size + _SEAL:
-        raise CampaignDamagedError("it was cut short: {count} bytes are no shard", count=len(data))
+        raise CampaignDamagedError("the shard is incomplete: it has only {count} bytes", count=len(data))
     magic, version, length = _LENGTHS.unpack_from(data)
     if magic != MAGIC:
-        raise CampaignDamagedError("it does not start as a shard does")
+        raise CampaignDamagedError("the file is not a shard: its first bytes are wrong")
     if version != FORMAT:
         raise CampaignDamagedError(
-            "it says format {version}, not {expected}", version=version, expected=FORMAT,
-            hint="it may be from another version of this package",
+            "the shard has format {version}, but format {expected} is required", version=version, expected=FORMAT,
+            hint="another version of rocking may have written the shard",
         )  # fmt: skip
     offset = _LENGTHS.size + int(length)
     if offset + _SEAL > len(data):
-        raise CampaignDamagedError("it was cut short within its header: {count} bytes", count=len(data))
+        raise CampaignDamagedError(
+            "the shard is incomplete: it ends within its header, after {count} bytes", count=len(data)
+        )
     return offset
 
 
@@ -193,20 +197,20 @@ def _where_broken(data: bytes, offset: int) -> str:
         count = int(header["last"]) - int(header["first"])
         kinds = _kinds(header)
         if (due := offset + count * width(kinds) + _SEAL) != len(data):
-            return f"it has {len(data)} bytes, {due} are due: cut short"
+            return f"the shard is incomplete: it has {len(data)} bytes, but {due} bytes are required"
         for name, kind in kinds.items():
             end = offset + count * kind.itemsize
             if zlib.crc32(memoryview(data)[offset:end]) != header["crc32"][name]:
-                return f"column {name} has changed"
+                return f"column {name} of the shard has changed"
             offset = end
-    return "its seal is broken"
+    return "the checksum of the shard does not match its content"
 
 
 def _read_header(data: bytes, offset: int) -> Any:
     try:
         header = json.loads(data[_LENGTHS.size : offset])
     except ValueError as error:
-        raise CampaignDamagedError("its header cannot be read") from error
+        raise CampaignDamagedError("the header of the shard is not readable") from error
     if not isinstance(header, dict):
-        raise CampaignDamagedError("its header is no header")
+        raise CampaignDamagedError("the header of the shard is not a JSON object")
     return header

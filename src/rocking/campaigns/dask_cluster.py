@@ -41,7 +41,7 @@ class DaskExecutor(Executor):
         value: object = address
         if not isinstance(value, str) or not value:
             raise InvalidValueError(
-                parameter="address", allowed='that of a scheduler, as in "tcp://host:8786"', value=value
+                parameter="address", allowed='the address of a scheduler, such as "tcp://host:8786"', value=value
             )
         self.address, self.ahead, self.timeout = address, checks.whole("ahead", ahead, 1, MOST_WORKERS), timeout
 
@@ -55,7 +55,7 @@ class DaskExecutor(Executor):
             client = dask.Client(self.address, timeout=self.timeout, set_as_default=False)
         except (OSError, ValueError) as error:
             raise CampaignWorkerError(
-                "no Dask scheduler answers at {address}: {reason}", address=self.address, reason=str(error)
+                "the Dask scheduler at {address} does not respond: {reason}", address=self.address, reason=str(error)
             ) from error
         with client:
             yield from _Window(dask, client, job, self).work(chunks, stop, retried)
@@ -124,7 +124,8 @@ class _Window:
             if isinstance(error, (self._dask.CancelledError, self._dask.comm.CommClosedError)):
                 return None
             raise CampaignWorkerError(
-                "histories {first} to {last}: {error}: {reason}", first=chunk.first, last=chunk.last - 1,
+                "the computation of histories {first} to {last} failed: {error}: {reason}",
+                first=chunk.first, last=chunk.last - 1,
                 error=type(error).__name__, reason=str(error),
             ) from error  # fmt: skip
         return self._job.keep(chunk, data, seconds, worker)

@@ -94,10 +94,10 @@ def refuse_used(folder: Path, mark: str, allowed: set[str], hint: str) -> None:
     """Refuse a folder that contains the file of a campaign, or files that are not allowed."""
     entries = {entry.name for entry in folder.iterdir() if not entry.name.startswith(".")}
     if mark in entries:
-        raise CampaignMismatchError("a campaign is here already", hint=hint).at(str(folder))
+        raise CampaignMismatchError("the folder already contains a campaign", hint=hint).at(str(folder))
     if odd := sorted(entries - allowed):
         raise CampaignMismatchError(
-            "not empty ({name} ...)", name=odd[0], hint="a campaign takes a folder of its own"
+            "the folder is not empty ({name} ...)", name=odd[0], hint="use an empty folder for the campaign"
         ).at(str(folder))
 
 
@@ -137,23 +137,23 @@ def guarded(
             raise
         code = getattr(error, "sqlite_errorcode", sqlite3.SQLITE_CORRUPT) & 0xFF
         if code in _DENIED:
-            raise CampaignStorageError("the ledger: {reason}; {kept}", reason=str(error), kept=safe(), hint=_ADVICE).at(
-                str(folder)
-            ) from error
+            raise CampaignStorageError(
+                "the ledger cannot be read or written: {reason}; {kept}", reason=str(error), kept=safe(), hint=_ADVICE
+            ).at(str(folder)) from error
         if code in _TAKEN:
             raise CampaignBusyError(
-                "another process holds the ledger ({reason})", reason=str(error), hint="try again later"
+                "another process uses the ledger ({reason})", reason=str(error), hint="try again later"
             ).at(str(folder)) from error
         raise ledger_damaged(folder, str(error)) from error
 
 
 def ledger_damaged(folder: Path, reason: str) -> CampaignDamagedError:
     """Return the error of a damaged ledger."""
-    hint = "run the campaign again: it is rebuilt from the shards"
+    hint = "run the campaign again: the run rebuilds the ledger from the shards"
     return CampaignDamagedError("ledger.sqlite is damaged ({reason})", reason=reason, hint=hint).at(str(folder))
 
 
-_ADVICE = "make room or allow writing, then run the campaign again: it goes on where it stopped"
+_ADVICE = "free disk space or allow writing, then run the campaign again to continue it"
 
 
 def _write_through(path: Path, data: bytes) -> None:
@@ -182,7 +182,9 @@ class FolderLock:
                 runs = _text(handle)
                 os.close(handle)
                 raise CampaignBusyError(
-                    "{process} runs this campaign", process=runs, hint="wait for it, or stop it"
+                    "{process} runs this campaign",
+                    process=runs,
+                    hint="wait until that process ends, or stop the process",
                 ).at(str(self._path.parent))
             time.sleep(0.02)
         _held.add(handle)

@@ -140,17 +140,18 @@ class WorkerTask:
         software = identity.software()
         if software != self.software:
             raise CampaignWorkerError(
-                "this worker has version {software}, the campaign was begun with {expected}", software=software,
+                "this worker has version {software}, but the campaign started with version {expected}",
+                software=software,
                 expected=self.software,
             )  # fmt: skip
         here, expected = identity.engine_of(self.histories), self.engine
         if kind_of(here) != kind_of(expected):
-            kinds = f"{kind_of(here)} engine, the campaign takes the {kind_of(expected)} one"
+            kinds = f"{kind_of(here)} engine, but the campaign needs the {kind_of(expected)} engine"
             raise CampaignWorkerError("this worker has the {versions}", versions=kinds)
         if here != expected:
             raise CampaignWorkerError(
-                "this worker computes other last digits: its engine is {engine}, that of the campaign is {expected} "
-                "({reason})", engine=here, expected=expected, reason=identity.LAST_DIGITS,
+                "this worker computes other last digits: the worker has engine {engine}, the campaign has engine "
+                "{expected} ({reason})", engine=here, expected=expected, reason=identity.LAST_DIGITS,
             )  # fmt: skip
 
     def compute(self, chunk: Chunk, threads: int | None = 1, stop: Stop = lambda: False) -> bytes | None:

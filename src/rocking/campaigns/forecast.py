@@ -47,8 +47,8 @@ def forecast(status: CampaignStatus, plan: Plan, histories: Histories) -> Foreca
     free = shutil.disk_usage(status.folder).free
     if free < needed:
         raise CampaignStorageError(
-            "{needed:.0f} MB are needed, {free:.0f} MB are free", needed=needed / 1e6, free=free / 1e6,
-            hint="make room first",
+            "the campaign needs {needed:.0f} MB, but only {free:.0f} MB are free", needed=needed / 1e6, free=free / 1e6,
+            hint="free disk space first",
         ).at(str(status.folder))  # fmt: skip
     return Forecast(left, chunks, work, needed, free)
 

@@ -119,15 +119,19 @@ class Identity:
         try:
             text = path.read_bytes()
         except (FileNotFoundError, NotADirectoryError) as error:
-            raise CampaignMismatchError("no campaign here ({file} is missing)", file=NAME).at(str(folder)) from error
+            raise CampaignMismatchError("the folder contains no campaign ({file} is missing)", file=NAME).at(
+                str(folder)
+            ) from error
         try:
             outer = json.loads(text)
             content, stated = outer["campaign"], outer["sha256"]
             if _encoded(content, stated) != text or _sum(content) != stated:
-                raise ValueError("its checksum does not fit")
+                raise ValueError("the checksum does not match the content")
             if content["plan"]["format"] != FORMAT:
                 raise CampaignMismatchError(
-                    "format {number}, this is {expected}", number=content["plan"]["format"], expected=FORMAT
+                    "the campaign has format {number}, but format {expected} is required",
+                    number=content["plan"]["format"],
+                    expected=FORMAT,
                 ).at(str(path))
             return cls(Plan(**content["plan"]), content["histories"])
         except (ValueError, KeyError, TypeError, InvalidValueError) as error:
@@ -135,7 +139,7 @@ class Identity:
                 "the shards are intact: create a campaign of the same histories and chunk size elsewhere, copy them "
                 "into its folder shards, and run it"
             )
-            raise CampaignDamagedError("it is damaged ({reason})", reason=str(error), hint=hint).at(
+            raise CampaignDamagedError("the file is damaged ({reason})", reason=str(error), hint=hint).at(
                 str(path)
             ) from error
 
@@ -154,15 +158,15 @@ class Identity:
             more = f"; and {len(differences) - _SHOWN} more" if len(differences) > _SHOWN else ""
             shown = "; ".join(differences[:_SHOWN]) + more
             raise CampaignMismatchError(
-                "this campaign is of other histories: {differences}", differences=shown or "their key"
+                "this campaign has other histories: {differences}", differences=shown or "their key"
             ).at(str(folder))
         for kind, before, here in (("software", was.software, now.software), ("engine", was.engine, now.engine)):
             if before == here:
                 continue
             if kind == "engine" and kind_of(before) == kind_of(here):
                 raise CampaignMismatchError(
-                    "this machine computes other last digits: begun with engine {expected}, here it is {engine} "
-                    "({reason})", expected=before, engine=here, reason=LAST_DIGITS,
+                    "this machine computes other last digits: the campaign started with engine {expected}, this "
+                    "machine has engine {engine} ({reason})", expected=before, engine=here, reason=LAST_DIGITS,
                     hint="finish it where it was begun, or create a new campaign",
                 ).at(str(folder))  # fmt: skip
             raise CampaignMismatchError(

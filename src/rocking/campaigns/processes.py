@@ -166,7 +166,8 @@ class _Crew:
                     if answer.number is not None:
                         raise OSError(answer.number, answer.reason)
                     raise CampaignWorkerError(
-                        "histories {first} to {last}: {reason}", first=answer.chunk.first, last=answer.chunk.last - 1,
+                        "the computation of histories {first} to {last} failed: {reason}",
+                        first=answer.chunk.first, last=answer.chunk.last - 1,
                         reason=answer.reason,
                     )  # fmt: skip
                 yield answer._replace(attempts=member.tasks.popleft()[1])
@@ -188,7 +189,8 @@ class _Crew:
             at_work = position == 0
             if at_work and attempts >= _ATTEMPTS:
                 raise CampaignWorkerError(
-                    "histories {first} to {last}: {attempts} workers died of them, the last one {cause}",
+                    "{attempts} workers ended during the computation of histories {first} to {last}, the last worker "
+                    "{cause}",
                     first=chunk.first, last=chunk.last - 1, attempts=attempts, cause=cause, hint=_GUARD,
                 )  # fmt: skip
             self._again.appendleft((chunk, attempts + at_work))
@@ -227,8 +229,8 @@ def chosen(executor: str | Executor, workers: int | None, start_method: str | No
     if isinstance(executor, Executor):
         if workers is not None:
             raise InvalidValueError(
-                "{parameter}={value} applies to the name of an executor only", parameter="workers", value=workers,
-                hint="the object states its workers",
+                "{parameter}={value} is allowed only if executor is a name", parameter="workers", value=workers,
+                hint="an Executor object has its own number of workers",
             )  # fmt: skip
         return executor
     if executor == "serial":

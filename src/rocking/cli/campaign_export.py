@@ -77,7 +77,7 @@ def _check(folder: JobFolder, to: Path, content: str, restitution: str | None, c
         from rocking.reports.inventory_folder import check_form
 
         if folder.job.study.assess is None or restitution is not None or crossing_curves is not None:
-            raise UsageError("report is for inventories, without --restitution and --crossing-curves")
+            raise UsageError("report can be used for inventories only, and not with --restitution or --crossing-curves")
         if to.suffix:
             check_form(to)
             if not to.parent.is_dir():

@@ -61,7 +61,7 @@ def executor_of(name: str, workers: int | None, address: str | None) -> tuple[st
     if address is None:
         return name, workers
     if workers is not None:
-        raise UsageError("--workers is not for --executor dask, whose cluster sets the number of workers")
+        raise UsageError("--workers cannot be used with --executor dask: the cluster sets the number of workers")
     return DaskExecutor(address), None
 
 
@@ -154,7 +154,9 @@ def show_forecast(path: Path, workers: int, out: Path | None, as_json: bool) -> 
         print(f"  disk       {estimate.disk / 1e6:.1f} MB{free}")
     if estimate.free is not None and estimate.free < estimate.disk:
         raise CampaignStorageError(
-            "{needed:.0f} MB are needed, {free:.0f} MB are free", needed=estimate.disk / 1e6, free=estimate.free / 1e6
+            "the campaign needs {needed:.0f} MB, but only {free:.0f} MB are free",
+            needed=estimate.disk / 1e6,
+            free=estimate.free / 1e6,
         ).at(str(out))
 
 

@@ -101,7 +101,9 @@ def _question(context: typer.Context, texts: list[str]) -> "tuple[Identification
         bodies = [str(path) for path in bodies_in(Path(measured[0]))]
         if len(bodies) > 1:
             raise UsageError(
-                "several body files, {bodies}", bodies=", ".join(bodies), hint="give one body file before the folder"
+                "the arguments contain several body files, {bodies}",
+                bodies=", ".join(bodies),
+                hint="give one body file before the folder",
             ).at(measured[0])
     file = document_file(context, bodies[0] if bodies else None, ("measurement", "identify"), ("record", "workers"))
     if file is not None:

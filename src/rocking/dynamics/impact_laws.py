@@ -201,7 +201,7 @@ class DrawnRestitution(ImpactLaw):
     def __post_init__(self) -> None:
         quantiles = _by_side(self.factors)
         if np.any(np.diff(quantiles) < 0.0):
-            raise InvalidValueError("factors must be quantiles, which never decrease")
+            raise InvalidValueError("factors must be quantiles, and must not decrease")
         object.__setattr__(self, "seed", checks.whole("seed", self.seed, 0, _MASK))
         cut = checks.finite("cut", self.cut, shape=(2,))
         if not np.all((cut >= 0.0) & (cut < 1.0)):

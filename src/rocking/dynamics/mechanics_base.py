@@ -143,7 +143,7 @@ class Mechanics(ABC):
 
     def rows(self, motions: Sequence[Any], law: Any, settings: Any, engine: str) -> "RowRunner":
         """Return the object that computes the rows of a study."""
-        raise InvalidValueError("studies do not take {subject}", subject=self.subject)
+        raise InvalidValueError("studies do not accept {subject}", subject=self.subject)
 
     def parameters(self, body: Any, restitution: Any, settings: Settings) -> RockingParameters:
         """Return the parameters of a body with its restitution, for the rows of a study."""

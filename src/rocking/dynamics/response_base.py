@@ -242,7 +242,8 @@ class ResponseBase(Exported):
             )
         if suffix == ".html" and options:
             raise InvalidValueError(
-                "{options}: for films (.gif) only; the page has its own controls", options=", ".join(options)
+                "{options} can be used with films (.gif) only; a page (.html) has its own controls",
+                options=", ".join(options),
             )
         response: Any = self
         return animate_html(response, path) if suffix == ".html" else animate_gif(response, path, **options)

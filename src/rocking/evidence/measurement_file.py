@@ -207,17 +207,17 @@ def rows_in(path: Path) -> list[Measurement]:
     try:
         data = path.read_bytes()
     except (OSError, ValueError) as error:
-        raise MeasurementError("cannot be read ({reason})", reason=getattr(error, "strerror", None) or str(error)).at(
-            str(path)
-        ) from error
+        raise MeasurementError(
+            "the file cannot be read ({reason})", reason=getattr(error, "strerror", None) or str(error)
+        ).at(str(path)) from error
     if len(data) > _LARGEST:
         raise MeasurementError(
-            "has {size:.1f} MiB; files of measurements may have up to 16 MiB", size=len(data) / 2**20
+            "the file has {size:.1f} MiB; files of measurements may have up to 16 MiB", size=len(data) / 2**20
         ).at(str(path))
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise MeasurementError("is not UTF-8 text (byte {byte})", byte=error.start).at(str(path)) from error
+        raise MeasurementError("the file is not UTF-8 text (byte {byte})", byte=error.start).at(str(path)) from error
     kinds = {".toml": _tables, ".csv": _lines}
     if path.suffix.lower() not in kinds:
         raise MeasurementError(
@@ -228,7 +228,7 @@ def rows_in(path: Path) -> list[Measurement]:
     first_locations: dict[str, str] = {}
     for location, keys in kinds[path.suffix.lower()](path, text):
         if len(measurements) == _MOST:
-            raise MeasurementError("has more than {limit} measurements", limit=_MOST).at(str(path))
+            raise MeasurementError("the file has more than {limit} measurements", limit=_MOST).at(str(path))
         try:
             measurements.append(Measurement.model_validate(keys))
         except ValidationError as error:
@@ -249,12 +249,12 @@ def _tables(path: Path, text: str) -> Iterable[tuple[str, dict[str, Any]]]:
     try:
         tables = tomllib.loads(text)
     except (ValueError, RecursionError) as error:
-        raise MeasurementError("is not TOML that can be read: {reason}", reason=str(error)[:200]).at(
+        raise MeasurementError("the file is not readable TOML: {reason}", reason=str(error)[:200]).at(
             str(path)
         ) from error
     rows = tables.pop("measurement", None)
     if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
-        raise MeasurementError("has no tables [[measurement]]").at(str(path))
+        raise MeasurementError("the file has no tables [[measurement]]").at(str(path))
     for number, row in enumerate(rows, start=1):
         row_values = {**tables, **row}
         numbers = {key: float(value) for key, value in row_values.items() if type(value) is int}
@@ -275,7 +275,9 @@ def _lines(path: Path, text: str) -> Iterable[tuple[str, dict[str, Any]]]:
                 )
             yield location, {key: _value(key, field.strip()) for key, field in row.items() if field.strip()}
     except csv.Error as error:
-        raise MeasurementError("is no CSV ({reason})", reason=str(error)).at(str(path), reader.line_num) from error
+        raise MeasurementError("the file is not a CSV file ({reason})", reason=str(error)).at(
+            str(path), reader.line_num
+        ) from error
 
 
 def _value(key: str, field: str) -> Any:

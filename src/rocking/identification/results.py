@@ -290,7 +290,9 @@ class Identification(Exported):
             If the measurement was refused.
         """
         if self.refused:
-            raise InvalidValueError("no law without an identification: {reason}", reason=self.refused[0])
+            raise InvalidValueError(
+                "a refused identification gives no restitution law: {reason}", reason=self.refused[0]
+            )
         return RandomRestitution(self._next, seed)
 
     def answer(self) -> Answer:

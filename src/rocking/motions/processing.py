@@ -204,7 +204,8 @@ def resampled(motion: GroundMotion, time_step: float) -> GroundMotion:
     factor = round(ratio)
     if abs(ratio - factor) > ROUNDING * factor:
         raise InvalidValueError(
-            "{parameter} above {step:g} s must be a whole multiple of it, got {value} s, {ratio:g} times",
+            "{parameter} above {step:g} s must be a whole multiple of {step:g} s, got {value} s, {ratio:g} times "
+            "{step:g} s",
             parameter="time_step", value=new, step=motion.time_step, ratio=ratio,
         )  # fmt: skip
     if factor > len(motion) - 1:

@@ -84,7 +84,7 @@ def refuse_changes(before: list[dict[str, Any]], now: list[dict[str, Any]]) -> N
     advice = "restore it, or start a new campaign in another folder"
     for path, item in was.items():
         if path not in here:
-            raise InvalidValueError("The file is missing. The campaign uses it", hint=advice).at(str(path))
+            raise InvalidValueError("The file is missing, but the campaign uses this file", hint=advice).at(str(path))
         if here[path]["sha256"] != item["sha256"]:
             raise InvalidValueError(
                 "The file changed after the start of the campaign (SHA-256 {expected}... before, {hash}... now)",
@@ -93,7 +93,7 @@ def refuse_changes(before: list[dict[str, Any]], now: list[dict[str, Any]]) -> N
     added = sorted(set(here) - set(was))
     if added:
         raise InvalidValueError(
-            "The campaign does not use this new file", hint="remove it, or start a new campaign in another folder"
+            "The campaign does not use this new file", hint="remove the file, or start a new campaign in another folder"
         ).at(added[0])
 
 

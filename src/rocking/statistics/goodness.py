@@ -80,7 +80,7 @@ def goodness_of(
     fitted = np.flatnonzero(refits.exists)
     if fitted.size < 0.5 * repetitions:
         raise InvalidValueError(
-            "half of {repetitions} repetitions must be refitted, got {fitted}", repetitions=repetitions,
+            "at least half of the {repetitions} repetitions must have a fit, got {fitted}", repetitions=repetitions,
             fitted=fitted.size, hint="too few trials",
         )  # fmt: skip
     theta, failures, trials = refits.theta[fitted], failures[fitted], trials[fitted]

@@ -94,7 +94,9 @@ class Forecasts:
         self.left_out = int((~complete).sum())
         self.probability, self.outcome = forecast[complete], happened[complete]
         if not complete.any():
-            raise InvalidValueError("no outcome is known of {count}: there is nothing to score", count=forecast.size)
+            raise InvalidValueError(
+                "all {count} outcomes are unknown, but a score needs a known outcome", count=forecast.size
+            )
         if (bad := (self.probability < 0.0) | (self.probability > 1.0)).any():
             raise InvalidValueError(
                 parameter="probability", allowed=Range(0.0, 1.0), value=float(self.probability[bad][0]),

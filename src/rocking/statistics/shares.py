@@ -70,14 +70,15 @@ class SaltelliDesign:
         rows = (2 + len(self.inputs)) * self.count
         if results.ndim != 2 or len(results) != rows:
             raise InvalidValueError(
-                "{parameter} must be one for each of {points} points, got shape {shape}", parameter="answers",
+                "{parameter} must have one value for each of the {points} points, got shape {shape}",
+                parameter="answers",
                 points=rows, shape=results.shape,
             )  # fmt: skip
         stacked = results.reshape(2 + len(self.inputs), self.count, -1)
         stacked = stacked[:, ~np.isnan(stacked).any(axis=(0, 2))]
         random, kept = np.random.default_rng(self.seed), stacked.shape[1]
         if not kept:
-            raise InvalidValueError("no point of the design has all its results")
+            raise InvalidValueError("no point of the design has a complete set of results")
         samples = random.multinomial(kept, np.full(kept, 1.0 / kept), size=checks.whole("repetitions", repetitions, 1))
         weights = np.vstack([np.ones(kept), samples]) / kept
         names = [*self.inputs, *(["case"] if stacked.shape[2] > 1 else [])]

@@ -111,7 +111,7 @@ def main_period(motion: Motion) -> float:
     frequency = abs(motion.waves[0][1]) if isinstance(motion, Sinusoids) else 0.0
     if frequency == 0.0:
         raise InvalidValueError(
-            "the period of a pulse cannot vary for {motion!r}, which has none", motion=motion.name,
+            "the period cannot vary for {motion!r}, since this motion has no period", motion=motion.name,
             hint="Use scale, pga, pgv or duration for this motion.",
         )  # fmt: skip
     return 2.0 * math.pi / frequency

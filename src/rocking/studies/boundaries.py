@@ -110,7 +110,8 @@ def checked(plane: Plane, by: str, tolerance: float) -> float:
     for axis in (plane.x, plane.y):
         if axis.values.size < 2:
             raise InvalidValueError(
-                "{parameter} must have at least 2 values to have a boundary between, got 1", parameter=axis.name
+                "{parameter} must have at least 2 values, since a boundary lies between two values, got 1",
+                parameter=axis.name,
             )
     return checks.within("tolerance", tolerance, 1e-15, 0.1)
 

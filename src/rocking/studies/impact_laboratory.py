@@ -144,7 +144,7 @@ def checked_integer(name: str, value: Any, minimum: int) -> int:
     if result != int(result) or result < minimum:
         raise InvalidValueError(
             parameter=name, allowed=f"a whole number of at least {minimum}", value=result,
-            hint="It is not rounded.",
+            hint="Other numbers are not rounded.",
         )  # fmt: skip
     return int(result)
 
@@ -282,7 +282,8 @@ def points_convergence(
     intervals = np.array(counts, dtype=np.float64) - 1.0
     if intervals.size < 3 or not bool((intervals[1:] == 2.0 * intervals[:-1]).all()):
         raise InvalidValueError(
-            "{parameter} must be three or more with doubled intervals, such as 11, 21, 41; got {counts}",
+            "{parameter} must be three or more numbers of points that double the number of intervals, such as 11, "
+            "21, 41; got {counts}",
             parameter="counts",
             counts=counts,
         )  # fmt: skip

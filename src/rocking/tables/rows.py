@@ -80,7 +80,7 @@ def to_excel(
         if len(table) > MOST_ROWS_OF_EXCEL:
             kind = f" {table.row}" if isinstance(table, Grid) else ""
             raise InvalidValueError(
-                "a sheet of Excel has at most {limit} rows, these are {count}{rows}", limit=MOST_ROWS_OF_EXCEL,
+                "a sheet of Excel has at most {limit} rows, but the table has {count}{rows}", limit=MOST_ROWS_OF_EXCEL,
                 count=len(table), rows=kind, hint=f"use {others}",
             )  # fmt: skip
     book: Any = extra("openpyxl", "Excel").Workbook(write_only=True)

@@ -127,22 +127,22 @@ def test_every_truncation_is_detected():
 def test_whole_shards_elsewhere_are_refused():
     """A good shard under the name of another chunk, and one that the ledger does not know, are no results."""
     data = shard.pack(CHUNK, arrays())
-    with pytest.raises(CampaignDamagedError, match="it holds another chunk"):
+    with pytest.raises(CampaignDamagedError, match="the shard contains chunk"):
         shard.unpack(data, PLAN.chunk(4))
-    with pytest.raises(CampaignDamagedError, match="not the recorded one"):
+    with pytest.raises(CampaignDamagedError, match="differs from the recorded checksum"):
         shard.unpack(data, CHUNK, shard.seal(shard.pack(CHUNK, arrays(2))))
-    with pytest.raises(CampaignDamagedError, match="does not fit its name"):
+    with pytest.raises(CampaignDamagedError, match="does not match the chunk"):
         shard.unpack(data, Chunk(3, 120, 161, CHUNK.name))
 
 
 def test_damage_is_named():
     """The sentence says which column changed, or that the file was cut short."""
     data = shard.pack(CHUNK, arrays())
-    with pytest.raises(CampaignDamagedError, match="column still_rocking has changed"):
+    with pytest.raises(CampaignDamagedError, match="column still_rocking of the shard has changed"):
         shard.unpack(flipped(data, 8 * (len(data) - 40)), CHUNK)
-    with pytest.raises(CampaignDamagedError, match="are due: cut short"):
+    with pytest.raises(CampaignDamagedError, match="the shard is incomplete: it has"):
         shard.unpack(data[:-100], CHUNK)
-    with pytest.raises(CampaignDamagedError, match="format 1, not 2"):
+    with pytest.raises(CampaignDamagedError, match="format 1, but format 2 is required"):
         shard.unpack(flipped(flipped(data, 64), 65), CHUNK)
 
 

@@ -118,12 +118,12 @@ def test_set_aside_deletes_nothing(tmp_path):
 @pytest.mark.parametrize(
     ("code", "kind", "words"),
     [
-        (sqlite3.SQLITE_FULL, CampaignStorageError, "all is safe; make room"),
+        (sqlite3.SQLITE_FULL, CampaignStorageError, "all is safe; free disk space"),
         (sqlite3.SQLITE_READONLY, CampaignStorageError, "allow writing"),
         (sqlite3.SQLITE_IOERR_FSYNC, CampaignStorageError, "run the campaign again"),
-        (sqlite3.SQLITE_BUSY, CampaignBusyError, "another process holds the ledger"),
+        (sqlite3.SQLITE_BUSY, CampaignBusyError, "another process uses the ledger"),
         (sqlite3.SQLITE_CORRUPT, CampaignDamagedError, "run the campaign again"),
-        (sqlite3.SQLITE_NOTADB, CampaignDamagedError, "rebuilt from the shards"),
+        (sqlite3.SQLITE_NOTADB, CampaignDamagedError, "rebuilds the ledger from the shards"),
     ],
 )
 def test_database_errors_have_sentences(tmp_path, code, kind, words):
@@ -278,7 +278,7 @@ def test_disk_full_at_any_file(campaign, tmp_path, work, monkeypatch, call, shar
 
     monkeypatch.setattr(disk, "_write_through", filling)
     if call <= 6:
-        sentence = f"No space left on device; {call - 1} of 6 chunks are safe; make room .* run the campaign again"
+        sentence = f"No space left on device; {call - 1} of 6 chunks are safe; free disk .* run the campaign again"
         with pytest.raises(CampaignStorageError, match=sentence):
             campaign.run(workers=1)
     else:
@@ -327,7 +327,7 @@ def test_real_full_disk(tmp_path):
     )
     first, second, third = said.strip().splitlines()
     assert "REFUSED" in first
-    assert "chunks are safe; make room" in first
+    assert "chunks are safe; free disk space" in first
     done, wrong = map(int, second.split()[1:])
     assert 0 < done < 40
     assert wrong == 0

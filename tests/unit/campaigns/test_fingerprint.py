@@ -32,7 +32,7 @@ def test_another_instruction_set_is_refused(tmp_path, work, monkeypatch):
     """A campaign begun with one set is neither opened nor run with another one, and is finished with the first."""
     monkeypatch.delenv("ROCKING_ISA", raising=False)
     campaign = Campaign.create(tmp_path / "c", work, 50)
-    sentence = r"this machine computes other last digits: begun with engine fast, \w{16}, here it is fast, \w{16} "
+    sentence = r"digits: the campaign started with engine fast, \w{16}, this machine has engine fast, \w{16} "
     monkeypatch.setenv("ROCKING_ISA", "plain")
     with pytest.raises(CampaignMismatchError, match=sentence):
         Campaign.open(tmp_path / "c", work)

@@ -59,7 +59,7 @@ def test_worker_that_dies_once_costs_nothing(campaign, tmp_path, work, monkeypat
 def test_chunk_that_kills_every_worker_is_named(campaign, monkeypatch):
     """Three deaths of the same chunk end the run with its histories; the others that were done are safe."""
     breaking(monkeypatch, lambda chunk: os.kill(os.getpid(), signal.SIGTERM) if chunk.number == 4 else None)
-    with pytest.raises(CampaignWorkerError, match=r"histories 200 to 249: 3 workers died of them, .* by SIGTERM"):
+    with pytest.raises(CampaignWorkerError, match=r"3 workers ended .* of histories 200 to 249, .* by SIGTERM"):
         campaign.run(**FORK, workers=2)
     assert campaign.verify().damaged == ()
     monkeypatch.undo()
@@ -73,14 +73,16 @@ def test_error_in_a_worker_is_told(campaign, monkeypatch):
         raise ZeroDivisionError("by nought")
 
     breaking(monkeypatch, fail)
-    with pytest.raises(CampaignWorkerError, match="histories 0 to 49: ZeroDivisionError: by nought"):
+    with pytest.raises(CampaignWorkerError, match="histories 0 to 49 failed: ZeroDivisionError: by nought"):
         campaign.run(**FORK, workers=1)
 
 
 def test_worker_without_the_engine_is_refused(campaign, monkeypatch):
     """Results of two engines are never mixed."""
     breaking(monkeypatch, lambda _: setattr(fast_engine, "chosen", lambda *_: "reference"))
-    with pytest.raises(CampaignWorkerError, match="this worker has the reference engine, the campaign takes the fast"):
+    with pytest.raises(
+        CampaignWorkerError, match="this worker has the reference engine, but the campaign needs the fast"
+    ):
         campaign.run(**FORK, workers=1)
 
 
@@ -88,7 +90,7 @@ def test_worker_without_the_engine_is_refused(campaign, monkeypatch):
     ("name", "value", "words"),
     [
         ("_fingerprint", lambda *_: "0" * 16, "this worker computes other last digits: .* fast, 0000"),
-        ("software", lambda: "9.9", r"this worker has version 9\.9, the campaign was begun with"),
+        ("software", lambda: "9.9", r"this worker has version 9\.9, but the campaign started with"),
     ],
 )
 def test_worker_of_other_bits_is_refused(campaign, monkeypatch, name, value, words):

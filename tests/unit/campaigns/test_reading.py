@@ -86,5 +86,5 @@ def test_check_looks_ahead(tmp_path, work, monkeypatch):
     assert new.check().needed == 0
     fresh = Campaign.create(tmp_path / "d", work, 50)
     monkeypatch.setattr(forecast.shutil, "disk_usage", lambda _: type("Usage", (), {"free": 10}))
-    with pytest.raises(CampaignStorageError, match="are needed, 0 MB are free"):
+    with pytest.raises(CampaignStorageError, match="but only 0 MB are free"):
         fresh.check()

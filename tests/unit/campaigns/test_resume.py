@@ -80,7 +80,7 @@ def test_identity_that_changed_is_refused(finished, work):
     for bit in np.random.default_rng(3).integers(0, 8 * len(good), 300):
         path.write_bytes(good)
         flip(path, int(bit))
-        with pytest.raises(CampaignDamagedError, match=r"campaign\.json: it is damaged .* the shards are intact"):
+        with pytest.raises(CampaignDamagedError, match=r"campaign\.json: the file is damaged .* the shards are intact"):
             Campaign.open(finished.folder, work)
     for length in range(0, len(good), 97):
         path.write_bytes(good[:length])
@@ -131,9 +131,9 @@ def test_histories_that_changed_are_refused_by_a_run(campaign, work):
 
 def test_folders_are_refused(finished, tmp_path, work):
     """No campaign, one that is there already, other things in the folder, a file in the way."""
-    with pytest.raises(CampaignMismatchError, match="no campaign here"):
+    with pytest.raises(CampaignMismatchError, match="contains no campaign"):
         Campaign.open(tmp_path, work)
-    with pytest.raises(CampaignMismatchError, match="a campaign is here already"):
+    with pytest.raises(CampaignMismatchError, match="already contains a campaign"):
         Campaign.create(finished.folder, work)
     (tmp_path / "full").mkdir()
     (tmp_path / "full" / "letter.txt").write_text("mine", encoding="utf-8")

@@ -160,7 +160,7 @@ def test_damage_is_told(run, printed, job, tmp_path):
     assert json.loads(run("status", folder, "--json")[1])["damaged"]
 
 
-HARMS = {"flip": "has changed", "cut": "cut short", "lose": "is missing", "swap": "holds another chunk"}
+HARMS = {"flip": "has changed", "cut": "incomplete", "lose": "is missing", "swap": "the shard contains chunk"}
 
 
 @pytest.mark.slow
@@ -204,7 +204,11 @@ def test_damaged_ledger_is_told_and_mended(run, job, tmp_path):
     assert json.loads(run("verify", folder, "--json")[1])["is_complete"] is False
     for words in (("status", folder), ("export", folder, "--output", tmp_path / "r.csv")):
         code, _, err = run(*words)
-        assert (code, "run the campaign again: it is rebuilt from the shards" in err, len(err.splitlines())) == (
+        assert (
+            code,
+            "run the campaign again: the run rebuilds the ledger from the shards" in err,
+            len(err.splitlines()),
+        ) == (
             6,
             True,
             1,
@@ -221,7 +225,7 @@ def test_changed_job_is_told_alike(run, job, tmp_path):
     (folder / "job.toml").write_text((folder / "job.toml").read_text() + "# mine\n")
     told = {run(word, folder) for word in ("verify", "status", "resume")}
     (((code, out, err)),) = told
-    assert (code, out, "job.toml has changed since the campaign began; restore it" in err) == (6, "", True)
+    assert (code, out, "job.toml has changed since the campaign began; restore the file" in err) == (6, "", True)
 
 
 @pytest.mark.slow
@@ -259,7 +263,7 @@ def test_check_of_a_small_disk(run, job, tmp_path, monkeypatch):
     monkeypatch.setattr("shutil.disk_usage", lambda _: usage)
     code, out, err = run("check", job(), "--output", tmp_path / "c")
     assert (code, "0 MB free" in out) == (4, True)
-    assert err.startswith(f"rocking: {tmp_path / 'c'}: 0 MB are needed")
+    assert err.startswith(f"rocking: {tmp_path / 'c'}: the campaign needs 0 MB")
 
 
 @pytest.mark.slow

@@ -145,7 +145,7 @@ def test_inventory_is_that_of_the_other_command(run, tmp_path):
     [
         (("--output", "r.txt"), "an inventory can be written as .html, .pdf, .xlsx, .csv, .json"),
         (("--output", "boundary=r.csv"), 'a campaign of kind "inventory" has no boundary'),
-        (("--output", "r.html", "--crossing-curves", "refuse"), "without --restitution and --crossing-curves"),
+        (("--output", "r.html", "--crossing-curves", "refuse"), "not with --restitution or --crossing-curves"),
         (("--output", "missing/r.html"), "cannot write missing/r.html"),
     ],
 )

@@ -313,7 +313,7 @@ def test_options_of_a_file_that_is_not_there(run, refuses, mixed):
     usual = ["--set", "motion.time_step=0.01", "--set"]
     for records in (["mixed"], ["mixed/a.txt", "mixed/b.txt"], ["mixed/a.txt", "other/c.txt"]):
         words = ["record", "batch", *records, *usual, 'motion.files={"d.txt"={units="g"}}']
-        refuses(words, "files: no file 'd.txt' in this set")
+        refuses(words, "files: this set does not contain the file 'd.txt'")
     refuses(
         ["record", "batch", "mixed", *usual, 'motion.files={"a.txt"={unit="g"}}'], "files.a.txt: unknown key 'unit'"
     )

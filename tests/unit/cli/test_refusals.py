@@ -125,10 +125,10 @@ REFUSED = {
         "run job.toml --output new --executor dask --address tcp://a:1 --workers 2": "cluster",
         "run job.toml --output new --workers 0": "workers",
         "run job.toml": "out",
-        "status used": "no campaign of a job file here",
-        "resume used": "no campaign of a job file here",
+        "status used": "contains no campaign of a job file",
+        "resume used": "contains no campaign of a job file",
         "verify none": "none",
-        "export used --output r.nc": "no campaign of a job file here",
+        "export used --output r.nc": "contains no campaign of a job file",
         "stop": "stop",
     },
     "code-checks": {

@@ -138,7 +138,7 @@ def test_a_scan_in_two_components(answered, tmp_path):
             (),
             "line 2: The record file x does not exist",
         ),
-        (lambda at: (at / "outcomes.csv").write_text("motion,overturned\nrecord_0.txt,\n", "utf-8"), (), "to score"),
+        (lambda at: (at / "outcomes.csv").write_text("motion,overturned\nrecord_0.txt,\n", "utf-8"), (), "are unknown"),
         (
             lambda at: None,
             ("--set", "motion.scale=2"),

@@ -86,7 +86,7 @@ def test_bad_tables(at: Any, factors: Any, message: str) -> None:
 
 def test_bad_distributions() -> None:
     """Decreasing quantiles, seeds that are no whole numbers, means and deviations out of range are refused."""
-    with pytest.raises(InvalidValueError, match="quantiles, which never decrease"):
+    with pytest.raises(InvalidValueError, match="quantiles, and must not decrease"):
         RANDOM([0.6, 0.5], 1)
     seed: Any
     for seed in (-1, 2**64, 1.0, None, True, "1"):

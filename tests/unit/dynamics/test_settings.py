@@ -160,7 +160,7 @@ def test_studies_let_solids_hop() -> None:
     assert [each.friction for each in found] == [np.inf, 0.4, NEVER_SLIDES, 0.4]
     assert ["friction" in each.stated for each in found] == [False, True, True, True]
     (space,) = (mechanics for mechanics in MECHANICS if mechanics.name == "space")
-    with pytest.raises(InvalidValueError, match="studies do not take a body in space without friction"):
+    with pytest.raises(InvalidValueError, match="studies do not accept a body in space without friction"):
         space.rows([], ConstantRestitution(), space.settings(), "auto")
 
 

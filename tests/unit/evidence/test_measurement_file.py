@@ -174,12 +174,12 @@ def test_rows_that_are_refused(tmp_path, how):
 FILES = {
     "nothing.toml": ("", "no tables"),
     "list.toml": ("measurement = [1]", "no tables"),
-    "broken.toml": ("[[measurement", "is not TOML"),
+    "broken.toml": ("[[measurement", "is not readable TOML"),
     "empty.csv": ("source,licence\n", "no measurement"),
     "short.csv": ("source,licence\na\n", "number of fields"),
     "long.csv": ("source,licence\na,b,c\n", "number of fields"),
     "twice.csv": ("source,r,r\na,.9,.8\n", "column 'r' appears twice"),
-    "quotes.csv": ('source,licence\n"a"b,c\n', "is no CSV"),
+    "quotes.csv": ('source,licence\n"a"b,c\n', "is not a CSV file"),
     "rows.txt": ("", ".toml or .csv"),
 }
 

@@ -268,7 +268,7 @@ REFUSED: list[tuple[str, Any]] = [
     *(("high must be", lambda x=x: bandpassed(BOTH, *x)) for x in ((5.0, 5.0), (1.0, 50.0))),
     ("low must be", lambda: bandpassed(BOTH, 0.0, 10.0)),
     *(("order must be a whole number", lambda x=x: bandpassed(BOTH, 1.0, 10.0, x)) for x in (0, 2.5)),
-    ("above 0.1 s must be a whole multiple of it, got 0.15 s, 1.5 times", lambda: resampled(MOTION, 0.15)),
+    ("above 0.1 s must be a whole multiple of 0.1 s, got 0.15 s, 1.5 times 0.1 s", lambda: resampled(MOTION, 0.15)),
     ("must be at most 0.3 s, so that 2 samples remain, got 0.4 s", lambda: resampled(MOTION, 0.4)),
     ("at most 1e\\+08 samples, got 2.72727e\\+08; check the unit", lambda: resampled(MOTION, 1.1e-9)),
     *(("in seconds", lambda x=x: resampled(MOTION, x)) for x in (1e-10, 2000.0)),

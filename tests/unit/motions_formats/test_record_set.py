@@ -211,8 +211,8 @@ def test_names_of_single_files(tmp_path):
     found = read_records(tmp_path, **how, files={"south/a.txt": {"units": "g"}})
     assert [round(part.x.peak, 9) for part in found] == [0.3, round(0.3 * 9.80665, 9), 0.3]
     for files, words in {
-        "d.txt": ({"units": "g"}, r"files: no file 'd\.txt' in this set"),
-        "east/b.txt": ({"units": "g"}, r"files: no file 'east/b\.txt' in this set; did you mean 'b\.txt'"),
+        "d.txt": ({"units": "g"}, r"files: this set does not contain the file 'd\.txt'"),
+        "east/b.txt": ({"units": "g"}, r"does not contain the file 'east/b\.txt'; did you mean 'b\.txt'"),
         "a.txt": ({"units": "g"}, "must match one file of this set, got .*north/a.txt, .*south/a.txt"),
         "b.txt": ({"unit": "g"}, "b.txt: key must be one of units, time_step, format, skip, got 'unit'"),
         "south/b.txt": ({"units": "gg"}, "b.txt: units must be one of"),
@@ -238,5 +238,5 @@ def test_single_files_of_a_list(tmp_path):
         InvalidValueError, match=r"list\.csv: units of a\.txt appears in its row and in files; remove one"
     ):
         read_records(path, time_step=0.01, files={"a.txt": {"units": "g"}})
-    with pytest.raises(InvalidValueError, match=r"no file 'b\.txt' in this set"):
+    with pytest.raises(InvalidValueError, match=r"this set does not contain the file 'b\.txt'"):
         read_records(path, time_step=0.01, files={"b.txt": {"units": "g"}})

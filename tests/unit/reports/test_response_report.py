@@ -65,7 +65,7 @@ def test_a_history_without_a_result_has_no_report(tmp_path):
         rk.simulate(STATUE, PULSE, 0.9, most_events=1).report(tmp_path / "x.html")
     with pytest.raises(RockingError, match="nowhere"):
         ASKED["rocking"]().report(tmp_path / "nowhere" / "x.html")
-    with pytest.raises(RockingError, match="fps: for films"):
+    with pytest.raises(RockingError, match="fps can be used with films"):
         ASKED["rocking"]().animate(tmp_path / "x.html", fps=10)
 
 

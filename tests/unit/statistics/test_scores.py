@@ -117,7 +117,7 @@ def test_left_out_is_not_seen():
         (lambda: Forecasts([0.5], [1, 0]), "rows of one length"),
         (lambda: Forecasts([50.0], [1]), r"in \[0, 1\], got 50; Use fractions"),
         (lambda: Forecasts([0.5], [2]), "outcome must be 1, 0 or NaN, got 2"),
-        (lambda: Forecasts([0.5], [np.nan]), "nothing to score"),
+        (lambda: Forecasts([0.5], [np.nan]), "a score needs a known outcome"),
         (lambda: Forecasts([0.5], [1]).skill(Forecasts([0.5], [0])), "same outcomes"),
         (lambda: Forecasts([0.5], [1]).skill(0.5, "accuracy"), "measure must be one of brier, logarithmic"),
         (lambda: logistic_left_out([0.1, 0.2], [0, 1], [0, 1]), "one row per outcome"),

@@ -199,7 +199,7 @@ def test_too_little_is_refused():
         fit.goodness(groups=1)
     with pytest.raises(InvalidValueError, match="repetitions >= 20"):
         fit.goodness(repetitions=5)
-    with pytest.raises(InvalidValueError, match="must be refitted"):
+    with pytest.raises(InvalidValueError, match="must have a fit"):
         fit_lognormal([1, 1, 2.05, 4, 4], [0, 0, 1, 0, 0]).goodness()
 
 

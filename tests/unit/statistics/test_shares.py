@@ -94,7 +94,7 @@ def test_counts_are_powers_of_two(count):
 
 
 @pytest.mark.parametrize(
-    ("answers", "why"), [(np.zeros(7), "one for each of 5120 points"), (np.full(5120, np.nan), "no point")]
+    ("answers", "why"), [(np.zeros(7), "one value for each of the 5120 points"), (np.full(5120, np.nan), "no point")]
 )
 def test_answers_that_do_not_fit(answers, why):
     with pytest.raises(InvalidValueError, match=why):

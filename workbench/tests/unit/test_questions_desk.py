@@ -529,6 +529,6 @@ def test_records_of_mixed_units(desk):
     assert peaks == pytest.approx([0.3 * 9.80665, 3.0], rel=1e-6)
     assert '[motions.files."a.txt"]' in desk.tables(found.id)
     refused = asked({"c.txt": {"units": "g"}})
-    assert (refused.state, "files: no file 'c.txt' in this set" in refused.message) == ("refused", True)
+    assert (refused.state, "files: this set does not contain the file 'c.txt'" in refused.message) == ("refused", True)
     refused = asked({"a.txt": {"time_step": -1.0}})
     assert refused.message.startswith("motions[0].files.a.txt.time_step must be a number > 0, got -1")

@@ -347,7 +347,7 @@ def equilibria(
         raise InvalidValueError(
             "the centre of mass {centre} m must lie inside the convex hull of the points, and is {outside:.3g} m "
             "outside", parameter="centre", centre=centre_of_mass.tolist(), outside=float(-hull.heights.min()),
-            hint="check that both have the same frame and unit",
+            hint="check that centre of mass and points have the same axes and unit",
         )  # fmt: skip
     down = None if standing is None else _directions(standing)
     return _equilibria_of_hull(hull, centre_of_mass, kilograms, min_rise, surface - centre_of_mass, down)

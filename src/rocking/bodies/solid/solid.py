@@ -468,7 +468,9 @@ def found_base(parts: Sequence[Part], tolerance: float) -> Base:
     polygon = hull(points) if len(points) > 2 else None
     if polygon is not None and all(polygon.margin(c) >= r + slack for c, r in discs):
         return polygon
-    raise GeometryError("The base has round faces and corners outside each other. Use base= with points.")
+    raise GeometryError(
+        "The base consists of separate round faces and corners, and has no simple outline. Use base= with points."
+    )
 
 
 def _listed(parts: Any) -> list[Part]:

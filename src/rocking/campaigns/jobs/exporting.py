@@ -223,7 +223,7 @@ def checked(
         )  # fmt: skip
     if table not in _OF_ONE and restitution is not None:
         raise InvalidValueError(
-            "restitution applies to fragility, fema-p58 and ims only; each history has a restitution"
+            "restitution applies to fragility, fema-p58 and ims only; every history has its own restitution"
         )
     if table not in ANALYSES and crossing_curves is not None:
         raise InvalidValueError("crossing_curves applies to fragility and fema-p58 only")

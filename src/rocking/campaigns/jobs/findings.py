@@ -217,7 +217,7 @@ def measure_comparison(
     document, study = folder.job.document, folder.job.study
     if MEASURES not in study.exports:
         raise InvalidValueError(
-            "nothing to export because measures are compared over a cloud, this is {kind!r}",
+            "nothing to export because only a cloud analysis compares measures, and this analysis is {kind!r}",
             kind=document.campaign.kind,
         )  # fmt: skip
     refuse_unfinished(folder)
@@ -248,7 +248,7 @@ def label_of(table: str, restitution: str | None, labels: list[str]) -> str:
     if restitution is None and len(labels) > 1:
         own = table if table == MEASURES else f"a {table}"
         raise InvalidValueError(
-            "{parameter} must be {allowed}: each has {own} of its own", parameter="restitution",
+            "{parameter} must be {allowed}, because every restitution has {own} of its own", parameter="restitution",
             allowed=f"one of {', '.join(labels)}", own=own,
         )  # fmt: skip
     return labels[0] if restitution is None else checks.one_of("restitution", restitution, labels)

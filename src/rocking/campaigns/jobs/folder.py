@@ -87,7 +87,7 @@ class JobFolder:
         }
         with disk.guarded(path, lambda: "nothing was written"):
             if path.exists() and not path.is_dir():
-                raise CampaignMismatchError("a file, not a folder").at(str(path))
+                raise CampaignMismatchError("this is a file; a folder is needed").at(str(path))
             disk.make_folder(path)
             disk.refuse_used(path, JOB, {INPUTS}, resume_hint(path))
             disk.write_new(path / INPUTS, (json.dumps(content, indent=1, sort_keys=True) + "\n").encode())
@@ -124,7 +124,7 @@ class JobFolder:
         base = Path(content["job_folder"] if inputs is None else inputs)
         if not base.is_dir() and content["files"]:
             raise InvalidValueError(
-                "the folder of its inputs, {inputs}, is not there", inputs=base, hint="add --inputs"
+                "the folder of the input files, {inputs}, does not exist", inputs=base, hint="add --inputs"
             ).at(str(path))
         with located(str(path), "file"):
             files = InputFiles(base)
@@ -270,7 +270,9 @@ def _kept(path: Path) -> tuple[str, dict[str, Any]]:
     """Return the copied job, and the record of its inputs."""
     with disk.guarded(path):
         if not (path / JOB).is_file():
-            raise CampaignMismatchError("no campaign of a job file here ({file} is missing)", file=JOB).at(str(path))
+            raise CampaignMismatchError(
+                "the folder contains no campaign of a job file ({file} is missing)", file=JOB
+            ).at(str(path))
         text, noted = (path / JOB).read_bytes(), (path / INPUTS).read_bytes() if (path / INPUTS).exists() else b""
     try:
         content = json.loads(noted)
@@ -279,7 +281,7 @@ def _kept(path: Path) -> tuple[str, dict[str, Any]]:
         if content.get("job_sha256", _sha256(text)) != _sha256(text):  # older folders contain no hash of the job
             raise CampaignDamagedError(
                 "{file} has changed since the campaign began", file=path / JOB,
-                hint="restore it, or begin a new campaign in another folder",
+                hint="restore the file, or begin a new campaign in another folder",
             )  # fmt: skip
         names = {name: str(content[name]) for name in ("job_folder", "job_file")}
         return _of_schema(content.get("schema", 1), text.decode()), content | names

@@ -172,7 +172,7 @@ class Rounds:
             raise CampaignStorageError(
                 "{fault} in round {number}; {kept}", fault=str(getattr(cause, "strerror", None) or cause or error),
                 number=self.number + 1, kept=disk.NOTHING_LOST,
-                hint=f"make room or allow writing, then {resume_hint(folder)}",
+                hint=f"free disk space or allow writing, then {resume_hint(folder)}",
             ).at(str(folder)) from error  # fmt: skip
 
 

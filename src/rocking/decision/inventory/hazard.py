@@ -76,7 +76,7 @@ class IntensityLevel:
             decimal, integer = match[1].replace(",", "."), match[1].replace(",", "")
             raise InvalidValueError(
                 "{parameter} is ambiguous: {value} could be {decimal} or {whole} {unit}", parameter=kind, value=level,
-                decimal=decimal, whole=integer, unit=match[2], hint="Write one of them.",
+                decimal=decimal, whole=integer, unit=match[2], hint="Write one of the two numbers.",
             )  # fmt: skip
         return cls(kind, float(match[1].replace(",", ".")) * units[match[2]])
 

@@ -219,8 +219,8 @@ class InventoryObject:
             return self._turned()
         if self.shape == "round" or any(self.base(way) < self._size(way) for way in DIRECTIONS):
             raise InvalidValueError(
-                "With friction it moves in three dimensions, but its shape above the smaller base is unknown. Remove "
-                "the base, or add its body file."
+                "With friction the object moves in three dimensions, but its shape above the smaller base is "
+                "unknown. Remove the base, or add a body file of the object."
             )
         height = self.height
         middle = 0.5 * height if self.centre_of_mass_height is None else self.centre_of_mass_height

@@ -423,7 +423,10 @@ def _trial(line: int, cells: Sequence[str], titles: Sequence[str], mark: Decimal
     if len(cells) != len(titles):
         hint = "check for decimal commas" if len(cells) > len(titles) else "check the separators"
         raise InvalidValueError(
-            "{count} fields, but the first line has {expected}", count=len(cells), expected=len(titles), hint=hint
+            "the line has {count} fields, but the first line has {expected}",
+            count=len(cells),
+            expected=len(titles),
+            hint=hint,
         )
     row = {title: cell.strip() for title, cell in zip(titles, cells, strict=True)}
     files = tuple((axis, row[key]) for axis, key in (("x", "motion"), *((a, a) for a in AXES)) if row.get(key))

@@ -325,7 +325,8 @@ def _attribute(body: Any, names: tuple[str, ...]) -> Any:
         if getattr(body, name, None) is not None:
             return getattr(body, name)
     raise InvalidValueError(
-        "{parameter} must be {allowed}; a body in space needs {attributes}, got {type} without", parameter="body",
+        "{parameter} must be {allowed}; a body in space needs {attributes}, got {type} without this attribute",
+        parameter="body",
         allowed="a Block, a Section, MassPoints or a body in space", attributes=" or ".join(names),
         type=type(body).__name__,
     )  # fmt: skip

@@ -186,7 +186,8 @@ def _body_table(bodies: Bodies, gravity: float) -> tuple[FloatArray, IntArray, F
         if count > MOST_CORNERS:
             raise InvalidValueError(
                 "a base must have at most {limit} vertices in a batch, got {count}", limit=MOST_CORNERS, count=count,
-                hint='a round base is a radius, and engine="reference" takes any number',
+                hint='state a round base by its radius, or use engine="reference", which accepts any number of '
+                    "vertices",
             )  # fmt: skip
         scalars = (body.mass, body.frequency(gravity), body.size, body.lift, body.radius)
         numbers[k] = np.concatenate([scalars, body.centre, body.inertia.ravel()])

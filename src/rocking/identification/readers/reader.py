@@ -95,7 +95,7 @@ def read_measurement(  # noqa: PLR0913 - options of a file
             return _read_video(path, options)
         if (region, frame_rate) != (None, None):
             raise MeasurementError(
-                "is not a video: {region} and {rate} do not apply",
+                "the file is not a video; {region} and {rate} can be used with videos only",
                 region=Option("measurement.region"), rate=Option("measurement.frame_rate"),
             ).at(path.name)  # fmt: skip
         source = Source.of_path(path)
@@ -106,7 +106,7 @@ def read_measurement(  # noqa: PLR0913 - options of a file
         raise
     except Exception as error:  # any error of a reader refuses the file; the original error stays chained
         raise MeasurementError(
-            "cannot be read ({type}: {reason:.120})",
+            "the file cannot be read ({type}: {reason:.120})",
             type=type(error).__name__,
             reason=str(error),
             hint="the file may be damaged",
@@ -133,22 +133,26 @@ def _reader(path: Path, kind: str | None) -> Callable[[Source, ReaderOptions], M
             extensions=", ".join((*COMPRESSED, *VIDEOS, *_TABLES)),
         ).at(path.name)
     if kind == "video":
-        raise MeasurementError("does not have the extension of a video, but kind='video'").at(path.name)
+        raise MeasurementError("the file does not have the extension of a video, but kind='video'").at(path.name)
     return impact_list if kind == "times" else motion_series
 
 
 def _read_video(path: Path, options: ReaderOptions) -> RotationSeries:
     if options.kind not in (None, "video"):
         raise MeasurementError(
-            "has the extension of a video, but kind={kind!r}", kind=options.kind, hint="save its sound as WAV"
+            "the file has the extension of a video, but kind={kind!r}",
+            kind=options.kind,
+            hint="save the sound of the video as WAV",
         ).at(path.name)
     if stated := options.names("region", "frame_rate"):
-        raise MeasurementError("{options}: for tables only, not for a video", options=stated).at(path.name)
+        raise MeasurementError("{options} can be used with tables only, not with a video", options=stated).at(path.name)
     return rotation_from_video(path, options.region, options.frame_rate)
 
 
 def _read_sound(source: Source, options: ReaderOptions) -> ImpactTimes:
     if stated := options.names():
-        raise MeasurementError("{options}: for tables only, not for a sound", options=stated).at(source.name)
+        raise MeasurementError("{options} can be used with tables only, not with a sound", options=stated).at(
+            source.name
+        )
     wav = source.name.lower().endswith(".wav")
     return impacts_from_sound((read_wav if wav else read_compressed)(source.content, source.name))

@@ -41,7 +41,7 @@ class Recording:
         count = self.samples.shape[0]
         if count > MOST_SAMPLES:
             raise self.error(
-                "{count} samples; at most {limit} are allowed", count=count, limit=MOST_SAMPLES,
+                "the sound has {count} samples; at most {limit} samples are allowed", count=count, limit=MOST_SAMPLES,
                 hint="cut out the trial",
             )  # fmt: skip
         if count < _SHORTEST * self.rate:
@@ -95,12 +95,14 @@ def read_compressed(content: bytes, name: str) -> Recording:
         with soundfile.SoundFile(io.BytesIO(content)) as file:
             if file.frames > MOST_SAMPLES:
                 raise MeasurementError(
-                    "{count} samples; at most {limit} are allowed", count=file.frames, limit=MOST_SAMPLES
+                    "the sound has {count} samples; at most {limit} samples are allowed",
+                    count=file.frames,
+                    limit=MOST_SAMPLES,
                 ).at(name)
             samples, rate, stated = file.read(dtype="float64", always_2d=True), file.samplerate, file.frames
     except soundfile.LibsndfileError as error:
         raise MeasurementError(
-            "cannot be read as sound ({reason})", reason=str(error), hint="the file may be damaged"
+            "the file cannot be read as sound ({reason})", reason=str(error), hint="the file may be damaged"
         ).at(name) from error
     if samples.shape[0] != stated:
         raise MeasurementError(
@@ -126,11 +128,11 @@ def read_wav(content: bytes, name: str) -> Recording:
     for kind, chunk in _chunks(content, name):
         if kind == b"fmt ":
             if form is not None:
-                raise MeasurementError("two format chunks", hint="the file may be damaged").at(name)
+                raise MeasurementError("the file has two format chunks", hint="the file may be damaged").at(name)
             form = _form(chunk, name)
         elif kind == b"data":
             if form is None:
-                raise MeasurementError("samples precede their format", hint="the file may be damaged").at(name)
+                raise MeasurementError("the samples precede the format chunk", hint="the file may be damaged").at(name)
             return Recording(name, _samples(chunk, form, name), form[2])
     raise MeasurementError(
         "no format chunk: the file may be incomplete" if form is None else "no samples: the file may be incomplete"

@@ -34,7 +34,9 @@ def by_path(files: FileOptions | None, paths: Iterable[Path]) -> dict[Path, dict
         matches = [path for path in by_name.get(Path(name).name, []) if path.parts[-len(parts) :] == parts]
         if not matches:
             near = checks.nearest(str(name), list(by_name))
-            raise InvalidValueError("files: no file {file} in this set", file=f"{str(name)!r:.80}", hint=near)
+            raise InvalidValueError(
+                "files: this set does not contain the file {file}", file=f"{str(name)!r:.80}", hint=near
+            )
         if len(matches) > 1 or matches[0] in options:
             both = ", ".join(map(str, matches)) if len(matches) > 1 else f"two entries for {matches[0]}"
             raise InvalidValueError(

@@ -73,7 +73,10 @@ def bed_free_rocking(
     peaks = checks.whole("peaks", peaks, 1)
     setup = setup_of(body, bed, rotation=rotation, tolerance=tolerance)
     if setup.law.kind is LawKind.PLASTIC:
-        raise InvalidValueError("plastic points lose their history from peak to peak; use a law without memory")
+        raise InvalidValueError(
+            "a plastic law is not allowed, since the deformation of its points is lost from peak "
+            "to peak; use a law without memory"
+        )
     rigid = setup.rigid
     angles, times, touches, now, lingers = [float(rotation)], [0.0], list[float](), 0.0, False
     for _ in range(_MAX_RUNS * peaks):

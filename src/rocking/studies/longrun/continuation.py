@@ -351,7 +351,9 @@ def branch_off(
         If the bifurcation is a fold or a grazing.
     """
     if bifurcation.kind == "fold":
-        raise InvalidValueError("no branch begins at a fold: continue_orbit passes it")
+        raise InvalidValueError(
+            "no branch begins at a fold; use continue_orbit, which follows the branch through the fold"
+        )
     checks.one_of("bifurcation", bifurcation.kind, ("pitchfork", "period doubling"))
     orbit = bifurcation.orbit
     values, vectors = np.linalg.eig(orbit.jacobian)

@@ -124,8 +124,8 @@ def find_orbit(
     halves = impacts if halves is None else halves
     if impacts < 1 or (impacts - halves) % 2 or (impacts % 2 and not system.is_symmetric):
         raise InvalidValueError(
-            "{impacts} impacts in {halves} half periods are no orbit of this body: both are even, or both odd for a "
-            "symmetric body", impacts=impacts, halves=halves,
+            "this body has no orbit of {impacts} impacts in {halves} half periods: both numbers must be even, or "
+            "both odd for a symmetric body", impacts=impacts, halves=halves,
         )  # fmt: skip
     state = np.array([phase, speed], dtype=float)
     for _ in range(60):

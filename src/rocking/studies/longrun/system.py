@@ -298,7 +298,7 @@ def engine() -> Any:
         from rocking.dynamics import _longrun
     except ImportError as error:
         raise MissingExtraError(
-            "long-run dynamics needs the compiled engine, which is missing: install rocking where a C++17 compiler is"
+            "long-run dynamics needs the compiled engine, which is missing; install rocking with a C++17 compiler"
         ) from error
     return _longrun
 

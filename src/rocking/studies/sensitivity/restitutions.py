@@ -175,7 +175,9 @@ class SampledHistories(Histories):
                 sample=draw,
             )  # fmt: skip
         if isinstance(histories, SampledHistories):
-            raise InvalidValueError("these histories are already sampled. Use their base.")
+            raise InvalidValueError(
+                "These histories already have sampled restitutions. Use the histories without samples (base)."
+            )
         law = ConstantRestitution() if isinstance(base.law, SampledRestitution) else base.law
         return cls(base.motions, base, draw, law=law, settings=base.settings, engine=base.engine)
 

@@ -117,7 +117,7 @@ def test_the_same_bytes_whatever_the_chunks(text, tmp_path):
         (
             ".xlsx",
             "rocking.tables.rows.MOST_ROWS_OF_EXCEL",
-            "a sheet of Excel has at most 10 rows, these are 48 histories",
+            "a sheet of Excel has at most 10 rows, but the table has 48 histories",
         ),
         (
             ".mat",
@@ -189,7 +189,7 @@ def test_which_restitution(finished, tmp_path, text):
     """With several restitutions one must be named, and it decides the curve."""
     words = text("incremental").replace("value = 0.9", "values = [0.85, 0.95]")
     folder = finished("incremental", None, words)
-    with pytest.raises(InvalidValueError, match=r"restitution must be one of 0\.85, 0\.95: each has"):
+    with pytest.raises(InvalidValueError, match=r"must be one of 0\.85, 0\.95, because every restitution has"):
         export(folder, tmp_path / "f.csv", "fragility")
     with pytest.raises(InvalidValueError, match=r"got '0\.9'"):
         export(folder, tmp_path / "f.csv", "fragility", restitution="0.9")

@@ -86,7 +86,7 @@ def test_inputs_that_moved(job, tmp_path, records):
         (records / name).rename(inputs / name)
     JobFolder.create(tmp_path / "c", Job.read(inputs / "job.toml"))
     inputs.rename(tmp_path / "moved")
-    with pytest.raises(InvalidValueError, match=r"inputs, is not there; add --inputs"):
+    with pytest.raises(InvalidValueError, match=r"inputs, does not exist; add --inputs"):
         JobFolder.open(tmp_path / "c")
     assert JobFolder.open(tmp_path / "c", tmp_path / "moved").campaign.plan.count == 32
 
@@ -94,16 +94,16 @@ def test_inputs_that_moved(job, tmp_path, records):
 def test_folders_in_use(job, tmp_path):
     """A folder with a campaign, with something else, and a file are refused; nothing in them changes."""
     JobFolder.create(tmp_path / "c", Job.read(job))
-    with pytest.raises(CampaignMismatchError, match="is here already; go on with: rocking campaign resume"):
+    with pytest.raises(CampaignMismatchError, match="already contains a campaign; go on with: rocking campaign resume"):
         JobFolder.create(tmp_path / "c", Job.read(job))
     other = tmp_path / "other"
     other.mkdir()
     (other / "thesis.tex").touch()
     with pytest.raises(CampaignMismatchError, match=r"not empty \(thesis.tex ...\)"):
         JobFolder.create(other, Job.read(job))
-    with pytest.raises(CampaignMismatchError, match="a file, not a folder"):
+    with pytest.raises(CampaignMismatchError, match="this is a file; a folder is needed"):
         JobFolder.create(job, Job.read(job))
-    with pytest.raises(CampaignMismatchError, match="no campaign of a job file here"):
+    with pytest.raises(CampaignMismatchError, match="contains no campaign of a job file"):
         status_of(other)
 
 
@@ -134,12 +134,14 @@ def test_changed_copy_is_refused(job, tmp_path):
     copy = tmp_path / "c" / "job.toml"
     copy.write_text(copy.read_text().replace("8.0", "8.5"))
     for ask in (JobFolder.open, status_of, verified):
-        with pytest.raises(CampaignDamagedError, match=r"job\.toml has changed since the campaign began; restore it"):
+        with pytest.raises(
+            CampaignDamagedError, match=r"job\.toml has changed since the campaign began; restore the file"
+        ):
             ask(tmp_path / "c")
     noted = tmp_path / "c" / "inputs.json"
     assert json.loads(noted.read_text())["job_sha256"] == hashlib.sha256(folder.job.text.encode()).hexdigest()
     noted.write_text(json.dumps({k: v for k, v in json.loads(noted.read_text()).items() if k != "job_sha256"}))
-    with pytest.raises(CampaignMismatchError, match=r"this campaign is of other histories: content\.scales"):
+    with pytest.raises(CampaignMismatchError, match=r"this campaign has other histories: content\.scales"):
         _ = JobFolder.open(tmp_path / "c").campaign
     copy.write_text(folder.job.text)
     assert JobFolder.open(tmp_path / "c").campaign.plan == folder.campaign.plan
@@ -157,7 +159,7 @@ def test_kept_jobs_of_schema_1_have_the_default_of_their_time(tmp_path):
     noted.write_text(json.dumps({name: value for name, value in content.items() if name != "schema"}))
     assert JobFolder.open(tmp_path / "c").campaign.plan == plan
     noted.write_text(json.dumps(content))
-    with pytest.raises(CampaignMismatchError, match="of other histories"):
+    with pytest.raises(CampaignMismatchError, match="has other histories"):
         _ = JobFolder.open(tmp_path / "c").campaign
 
 

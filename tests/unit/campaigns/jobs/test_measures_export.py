@@ -193,7 +193,7 @@ def test_nothing_to_export(finished, tmp_path):
         assert "ims" not in exports_of(made)
         with pytest.raises(InvalidValueError, match=f'nothing to export because .*"{kind}" has no ims, .* cloud'):
             export(made, tmp_path / "m.csv", "ims")
-        with pytest.raises(InvalidValueError, match="nothing to export because measures are compared over a cloud"):
+        with pytest.raises(InvalidValueError, match="only a cloud analysis compares measures"):
             measure_comparison(made)
     weak = text_of().replace("scale = 1.5", "scale = 0.01")
     made = finished("cloud", words=weak)

@@ -44,7 +44,7 @@ def test_kinds_with_and_without():
         ("histories", "fragility={}/b.nc", 'nothing to export because a campaign of kind "histories" has no'),
         ("histories", "{}/b.doc", r"histories can be written as .* got '\.doc'"),
         ("histories", "{}/none/b.nc", "no folder"),
-        ("histories", "report={}/b.html", "report is for inventories"),
+        ("histories", "report={}/b.html", "report can be used for inventories only"),
         ("histories", "{}/b.png", 'A campaign of kind "histories" has no figure; export its table'),
         ("histories", "{}/a.nc", "a.nc is given twice"),
         ("overturning-map", "picture={}/b.nc", r"a picture must be \.png, \.svg, \.pdf, got '\.nc'"),
@@ -83,7 +83,7 @@ def test_search_without_a_result(tmp_path):
 def test_which_restitution_is_drawn(finished, tmp_path, text):
     """Clouds and incremental analyses have a picture of each restitution, and none that compares them."""
     folder = finished("cloud", None, text("cloud") + TWO_MODELS)
-    with pytest.raises(InvalidValueError, match="restitution must be one of housner, ked: each has a picture of its"):
+    with pytest.raises(InvalidValueError, match="one of housner, ked, because every restitution has a picture of its"):
         write(folder.path, [str(tmp_path / "a.png")], **NOTHING)
     write(folder.path, [str(tmp_path / "a.png")], **(NOTHING | {"restitution": "ked"}))
     assert (tmp_path / "a.png").exists()

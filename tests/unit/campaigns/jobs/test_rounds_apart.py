@@ -61,7 +61,7 @@ def test_executors_are_tried_before_anything_is_computed(tmp_path):
     """No scheduler, no such executor: said at once, also where no round would have been sent to it."""
     pytest.importorskip("distributed")
     folder = begun(tmp_path / "c")
-    with pytest.raises(CampaignWorkerError, match=r"no Dask scheduler answers at tcp://127\.0\.0\.1:1"):
+    with pytest.raises(CampaignWorkerError, match=r"the Dask scheduler at tcp://127\.0\.0\.1:1 does not respond"):
         folder.run(DaskExecutor("tcp://127.0.0.1:1", timeout=0.3))
     for who, workers in (("threads", None), ("serial", 0), (Serial(), 2)):
         with pytest.raises(InvalidValueError):

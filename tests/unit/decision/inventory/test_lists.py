@@ -146,7 +146,7 @@ def test_user_says_what_columns_are():
     found = parse_inventory(text, map_columns=f"{ours}, Rahmenbreite=")
     assert (found.objects[0].width, found.objects[0].height, found.ignored) == (0.2, 0.9, ("Rahmenbreite",))
     for wrong, words in (
-        ("Dinge=name", "no 'Dinge' among Ding"),
+        ("Dinge=name", "no column 'Dinge'. Its columns are Ding"),
         ("Ding=colour", "cannot be 'colour'"),
         ("x", "own title"),
     ):
@@ -214,9 +214,9 @@ def test_merged_cells_and_several_sheets(tmp_path):
     rows = [HEAD, ["a", 20, 30, 90], ["b", 20, None, 80]]
     found = read_inventory(workbook(tmp_path / "m.xlsx", {"x": rows}, ["C2:C3"]))
     assert [one.depth for one in found.objects] == [0.3, 0.3]
-    with pytest.raises(InvalidValueError, match=r"more than one table is a list: two.xlsx \(x\), two.xlsx \(y\)"):
+    with pytest.raises(InvalidValueError, match=r"the file contains several lists: two.xlsx \(x\), two.xlsx \(y\)"):
         read_inventory(workbook(tmp_path / "two.xlsx", {"x": rows, "y": rows}))
-    with pytest.raises(InvalidValueError, match="no height in the header, only 'Objekt' as name"):
+    with pytest.raises(InvalidValueError, match="the header contains no height, only 'Objekt' as name"):
         read_inventory(workbook(tmp_path / "none.xlsx", {"x": [HEAD[:3], ["a", 1, 2]]}))
 
 
@@ -242,19 +242,19 @@ def bomb(name, size):
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        (bomb("xl/workbook.xml", 70 << 20), "unpacked it is larger"),
-        (bomb("xl/workbook.xml", 9), "damaged workbook"),
-        (bomb("content.xml", 9), "damaged workbook"),
+        (bomb("xl/workbook.xml", 70 << 20), "the unpacked file is larger"),
+        (bomb("xl/workbook.xml", 9), "the workbook is damaged"),
+        (bomb("content.xml", 9), "the workbook is damaged"),
         (bomb("other", 9), "unsupported file"),
         (b"\xd0\xcf\x11\xe0 old", "an old .xls"),
-        (b"PK\x03\x04 cut off", "damaged workbook"),
+        (b"PK\x03\x04 cut off", "the workbook is damaged"),
         (bytes(range(256)) * 9, "not text in any encoding"),
         (bytes(range(1, 256)) * 9, "must contain the columns"),
         (b"", "must contain the columns"),
     ],
 )
 def test_files_that_are_no_list(content, words, tmp_path):
-    """Bombs, damaged workbooks and other files are refused in one sentence."""
+    """Bombs, the workbook is damageds and other files are refused in one sentence."""
     path = tmp_path / "list.xlsx"
     path.write_bytes(content)
     with pytest.raises(InvalidValueError, match=words):

@@ -62,7 +62,7 @@ def test_every_column():
     ("row", "words"),
     [
         ("x,,25,100", "Enter width_cm"),
-        ("x,20,25", "it has 3 fields, the header has 4; Check the separator"),
+        ("x,20,25", "the line has 3 fields, but the header has 4; Check the separator"),
         ("x,20,5,25,100", "Check for a decimal comma"),
         ("x,20 stone,25,100", "with a unit of m, cm, mm"),
         ("x,20 30,25,100", "must be one number"),
@@ -154,7 +154,7 @@ def test_bad_value_that_does_not_decide(column, value, words):
         (f"{HEAD},Rahmenbreite\n{GOOD},10", "resembles a size"),
         (f"{HEAD},Sockel\n{GOOD},10", "unknown column 'Sockel' resembles a size"),
         (f"{HEAD},length_cm\n{GOOD},10", "unknown column 'length_cm' resembles a size, in addition to width and depth"),
-        ("Objekt;Breite cm;Farbe\nx;1;2", "no depth and no height in the header, only 'Objekt' as name"),
+        ("Objekt;Breite cm;Farbe\nx;1;2", "the header contains no depth and no height, only 'Objekt' as name"),
         (f"{HEAD},gross (kg)\n{GOOD},10", "resembles a size"),
         (f"{HEAD},centre of area\n{GOOD},10", "resembles a size"),
         (f"{HEAD},base\n{GOOD},10", "'base' must state its unit: base_m"),

@@ -40,8 +40,8 @@ def test_a_bad_row_does_not_touch_the_others():
         "a,twice,1,,,": "scale must be one number",
         "a,0,1,,,": "scale must not be 0",
         ",1,1,,,": "motion is empty",
-        "a,1,1": "3 fields, but the first line has 6; check the separators",
-        "a,1,5,1,0,,": "7 fields, but the first line has 6; check for decimal commas",
+        "a,1,1": "the line has 3 fields, but the first line has 6; check the separators",
+        "a,1,5,1,0,,": "the line has 7 fields, but the first line has 6; check for decimal commas",
     }
     found = parsed("a,1,1,,,", *bad, "b,2,0,,,")
     assert [(trial.line, trial.motion) for trial in found.trials] == [(2, "a"), (10, "b")]

@@ -127,7 +127,7 @@ def test_a_verdict_needs_as_many_motions_as_it_says(yes, resolved):
     [
         ({"pgv": np.ones(3)}, "arrays of equal length"),
         ({"pga": np.zeros(320)}, "pga must be above zero"),
-        ({"outcome": np.full(320, np.nan)}, "nothing to score"),
+        ({"outcome": np.full(320, np.nan)}, "a score needs a known outcome"),
         ({"probability": np.full(320, 30.0)}, "Use fractions"),
         ({"event": "falling"}, "event must be one of overturning, uplift, sliding"),
         ({"count": 0}, "count"),

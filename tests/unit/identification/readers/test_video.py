@@ -121,8 +121,8 @@ def test_what_cannot_be_followed_is_refused_or_told(tmp_path):
 @pytest.mark.parametrize(
     ("given", "error", "words"),
     [
-        ({"kind": "sound"}, MeasurementError, "save its sound as WAV"),
-        ({"column": "top"}, MeasurementError, "column: for tables only"),
+        ({"kind": "sound"}, MeasurementError, "save the sound of the video as WAV"),
+        ({"column": "top"}, MeasurementError, "column can be used with tables only"),
         ({"region": [0, 0, 500, 50]}, InvalidValueError, "region must lie within 160 x 120 pixels"),
         ({"region": [1, 2]}, InvalidValueError, "region must be four numbers"),
         ({"region": [60, 30, float("nan"), 20]}, InvalidValueError, "region must be"),
@@ -142,7 +142,7 @@ def test_what_is_no_video(tmp_path):
     for name, given, words in (
         ("a.mp4", {}, "the first bytes are not those"), ("b.mp4", {}, "no such file"),
         ("a.csv", {"kind": "video"}, "not have the extension of a video"),
-        ("a.csv", {"frame_rate": 60.0}, "region= and frame_rate= do not apply"),
+        ("a.csv", {"frame_rate": 60.0}, "region= and frame_rate= can be used with videos only"),
     ):  # fmt: skip
         with pytest.raises(MeasurementError, match=words):
             read_measurement(tmp_path / name, **given)

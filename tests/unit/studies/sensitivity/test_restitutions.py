@@ -159,7 +159,7 @@ def test_histories_without_such_a_law_stay_as_they_are():
 @pytest.mark.parametrize(
     ("quantiles", "seed", "message"),
     [
-        ([0.9, 0.8], 1, "never decrease"),
+        ([0.9, 0.8], 1, "must not decrease"),
         ([0.9, 1.1], 1, "in \\[0, 1\\]"),
         ([0.9, float("nan")], 1, "finite"),
         ([0.9], 1, "at least 2"),

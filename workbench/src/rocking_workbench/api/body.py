@@ -124,14 +124,15 @@ def _toml(content: bytes, name: str, units: str | None) -> BodyInput:
         try:
             table = parsed_toml(content.decode("utf-8-sig"))
         except UnicodeDecodeError as error:
-            raise BodyFileError("is not readable TOML: {reason}", reason=error.reason) from error
+            raise BodyFileError("the file is not readable TOML: {reason}", reason=error.reason) from error
         except Refused as error:
-            raise BodyFileError("is not readable TOML: {reason}", reason=error.message) from error
+            raise BodyFileError("the file is not readable TOML: {reason}", reason=error.message) from error
         if "body" in table and isinstance(table["body"], dict):
             table = table["body"]
         if units is not None and table.get("units", units) != units:
             raise BodyFileError(
-                "states units = {value}, got units = {units!r}", parameter="units", value=table["units"],
+                "the file states units = {value}, but units = {units!r} is given",
+                parameter="units", value=table["units"],
                 units=units,
             )  # fmt: skip
     return BodyInput.model_validate(table)

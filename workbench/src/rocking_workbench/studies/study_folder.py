@@ -65,7 +65,9 @@ class StudyFolder(RunFolder):
                         count = Job.read(self.path / JOB).study.histories.count  # this call checks all inputs
                     if count != meta.histories:
                         raise InvalidValueError(
-                            "job has {count} histories, not {expected}", count=count, expected=meta.histories
+                            "the job has {count} histories, but {expected} are required",
+                            count=count,
+                            expected=meta.histories,
                         )
                 self.write(meta)
         except RockingError as error:

@@ -135,7 +135,7 @@ def read_inventory(
     if len(complete) > 1:
         names = ", ".join(sheet.source for _, sheet in complete)
         raise InvalidValueError(
-            "more than one table is a list: {names}", names=names, hint="Keep one, or use one file per table."
+            "the file contains several lists: {names}", names=names, hint="Keep one list, or use one file per list."
         ).at(path.name)
     if not complete:
         raise _no_header(path.name, [(located, sheet.rows) for located, sheet in lists])
@@ -217,7 +217,7 @@ def _no_header(source: str, candidates: Sequence[tuple[LocatedHeader | None, Seq
     if best and len(best.fields) > 1:
         titles = ", ".join(f"{column.title!r:.40} as {column.stem}" for column in best.columns if column)
         return InvalidValueError(
-            "no {missing} in the header, only {titles}", missing=" and no ".join(best.missing), titles=titles,
+            "the header contains no {missing}, only {titles}", missing=" and no ".join(best.missing), titles=titles,
             hint='Map another column, as in map_columns "Maß B=width_cm".',
         ).at(source)  # fmt: skip
     first = next((text_of(cell) for _, rows in candidates for _, row in rows[:1] for cell in row), "")
@@ -243,7 +243,8 @@ class _Reader:
         names = {*itertools.chain.from_iterable(names_of(self.location.titles))}
         if odd := [own for own in self.mapped if plain(own) not in names]:
             raise InvalidValueError(
-                "{parameter}: no {value} among {titles}", parameter="map_columns", value=odd[0],
+                "{parameter}: the list has no column {value}. Its columns are {titles}",
+                parameter="map_columns", value=odd[0],
                 titles=", ".join(filter(None, titles))[:300],
             ).at(source)  # fmt: skip
         below = self.sheet.rows[self.location.end :]
@@ -334,7 +335,7 @@ class _Reader:
         if len(row) != len(columns):
             comma, separator = Message("Check for a decimal comma."), Message("Check the separator.")
             raise InvalidValueError(
-                "it has {fields} fields, the header has {titles}",
+                "the line has {fields} fields, but the header has {titles}",
                 fields=len(row),
                 titles=len(columns),
                 hint=comma if len(row) > len(columns) else separator,
@@ -399,7 +400,7 @@ class _Reader:
         if body_file:
             if stated := [name for name in (*LENGTHS, "mass") if name in fields]:
                 title = values.titles.get(stated[0], stated[0])
-                raise InvalidValueError("its body file defines the sizes. Clear {title}.", title=title)
+                raise InvalidValueError("the body file of the object defines the sizes. Clear {title}.", title=title)
             fields |= body_of(str(body_file), units, self.find)
         values.settle_shape()
         for side in SIDES:

@@ -58,7 +58,7 @@ def sheets_in(content: bytes, source: str) -> Iterator[Sheet] | None:
             names, size = archive.namelist(), sum(entry.file_size for entry in archive.infolist())
             if size > MOST_BYTES:
                 raise InvalidValueError(
-                    "unpacked it is larger than {limit} MiB", limit=MOST_BYTES >> 20, hint="Save it as CSV."
+                    "the unpacked file is larger than {limit} MiB", limit=MOST_BYTES >> 20, hint="Save it as CSV."
                 ).at(source)
             if "xl/workbook.xml" in names:
                 tables = list(_of_excel(archive, content))
@@ -70,7 +70,7 @@ def sheets_in(content: bytes, source: str) -> Iterator[Sheet] | None:
         raise
     except Exception as error:  # for a damaged file, the reader raises any error
         raise InvalidValueError(
-            "a damaged workbook ({error})", error=type(error).__name__,
+            "the workbook is damaged ({error})", error=type(error).__name__,
             hint="Open it in a spreadsheet and save it again.",
         ).at(source) from error  # fmt: skip
     several = len(tables) > 1
@@ -163,7 +163,7 @@ class _OpenDocument:
         self.cell: dict[str, str] | None = None
 
     def doctype(self, *_: Any) -> None:
-        raise InvalidValueError("an .ods with its own document type is not supported")
+        raise InvalidValueError("an .ods file with its own document type (DTD) is not supported")
 
     def start(self, tag: str, attributes: dict[str, str]) -> None:
         if tag == "table:table" and len(self.tables) < _MOST_SHEETS:
@@ -301,7 +301,10 @@ def rows_of(text: str, delimiter: str, source: str) -> list[tuple[int, list[str]
             _check_number(rows, source)
     except csv.Error as error:
         raise InvalidValueError(
-            "not a table, line {line}: {reason}", line=line, reason=str(error), hint="Check for an open quotation mark."
+            "the file is not a table; line {line}: {reason}",
+            line=line,
+            reason=str(error),
+            hint="Check for an open quotation mark.",
         ).at(source) from error
     return rows
 

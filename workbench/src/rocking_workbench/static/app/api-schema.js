@@ -120,7 +120,7 @@ const downloadOf = (path) => {
   return last.includes(".") ? last.replace(/[{}]/g, "") : null;
 };
 
-// The sentences before the table of parameters, which is shown as a table.
+// Description without its table of parameters, since the page shows this table separately.
 /** @param {string} text */
 const plainText = (text) => (text ?? "").split(/\n\s*(?:Parameters|Returns|Raises)\n\s*-+/)[0].trim();
 

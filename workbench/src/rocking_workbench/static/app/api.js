@@ -1,4 +1,4 @@
-/** All communication with the server: JSON calls, calls where only the newest counts, and files to keep. */
+/** All communication with the server: JSON calls, calls of which only the newest is sent, and downloads. */
 
 import { spelt } from "/app/refusal.js";
 import { learnMessages, t } from "/app/words.js";
@@ -25,7 +25,7 @@ export const call = async (path, options) => {
 /** A file of the server as a blob. @param {string} path */
 export const fetchFile = async (path) => (await send(path)).blob();
 
-/** Call by POST; of several waiting calls with one key only the newest is sent.
+/** Call by POST. If several calls with one key wait, only the newest call is sent.
  * @type {<const Path extends string>(key: string, path: Path, json: unknown) => Promise<Server.Answer<"POST", Path>>} */
 export const latest = (key, path, json) =>
   new Promise((resolve, reject) => {
@@ -115,7 +115,7 @@ const refusalOf = async (answer) => {
   const content = await answer.json().catch(() => ({}));
   if (answer.status === 401) document.dispatchEvent(new CustomEvent("rocking:signed-out"));
   const error = { message: t("the server returned status {status}", { status: answer.status }), ...content.error };
-  return answer.status === 401 && error.text ? { ...error, message: error.text, hint: null } : error; // its hint is for scripts
+  return answer.status === 401 && error.text ? { ...error, message: error.text, hint: null } : error; // the hint of the error is for scripts
 };
 
 /** @param {Response} answer */

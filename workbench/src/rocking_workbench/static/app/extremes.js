@@ -1,18 +1,18 @@
 /** Extremes of data. `Math.max` with all values as arguments fails for about 100,000 values. */
 
-/** Largest value, and not less than `most`; NaN is ignored.
+/** Largest value, at least `most`; NaN is ignored.
  * @param {ArrayLike<number | null> & Iterable<number | null>} values @param {number} [most] */
 export const highest = (values, most = -Infinity) => {
   for (const value of values) if (value !== null && value > most) most = value;
   return most;
 };
 
-/** Smallest value, and not more than `least`; NaN is ignored.
+/** Smallest value, at most `least`; NaN is ignored.
  * @param {ArrayLike<number | null> & Iterable<number | null>} values @param {number} [limit] */
 export const lowest = (values, limit = Infinity) => {
   for (const value of values) if (value !== null && value < limit) limit = value;
   return limit;
 };
 
-/** From the smallest to the largest. @param {ArrayLike<number | null> & Iterable<number | null>} values */
+/** The smallest and the largest value. @param {ArrayLike<number | null> & Iterable<number | null>} values */
 export const spanOf = (values) => highest(values) - lowest(values);

@@ -9,7 +9,7 @@ const NONE = "\u2013";
 const MARK = new Intl.NumberFormat(language).formatToParts(0.5).find(({ type }) => type === "decimal")?.value ?? ".";
 const SUPERSCRIPTS = "\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079";
 
-/** Number with a number of significant digits.
+/** Number as text with a given number of significant digits.
  * @param {number | string | null | undefined} value @param {number} [digits] */
 export const number = (value, digits = 4) => {
   if (value === null || value === undefined || !Number.isFinite(Number(value))) return NONE;
@@ -20,7 +20,7 @@ export const number = (value, digits = 4) => {
   return numeric < 0 ? MINUS + text : text;
 };
 
-/** Number with a number of decimals. @param {number} value @param {number} digits */
+/** Number as text with a given number of decimals. @param {number} value @param {number} digits */
 export const fixed = (value, digits) => {
   const text = Math.abs(value).toFixed(digits);
   return (value < 0 && Number(text) > 0 ? MINUS : "") + text.replace(".", MARK);
@@ -40,7 +40,7 @@ export const quantity = (value, unit, digits = 4) => {
 /** Fraction of 1 as a percentage. @param {number} share @param {number} [digits] */
 export const percent = (share, digits = 3) => quantity(share * 100, "%", digits);
 
-/** Printed unit: m/s2 becomes m/s with a superscript 2. @param {string} unit */
+/** Unit as text: m/s2 becomes m/s with a superscript 2. @param {string} unit */
 export const pretty = (unit) => unit.replace(
   /([a-z])(-?[0-9])\b/gi, (_, letter, power) => letter + raised(power),
 );

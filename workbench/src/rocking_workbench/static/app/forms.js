@@ -1,4 +1,4 @@
-/** Form values of the views; part of the project, as the inputs. */
+/** Form values of the views. They are part of the project, like the inputs. */
 
 import { batch, signal } from "/parts/preact.js";
 import { changedAt, keep, stored } from "/app/inputs.js";
@@ -6,7 +6,7 @@ import { formsOf } from "/app/shape.js";
 
 const KEPT = "rocking.forms";
 
-/** The store of the forms, by view: get, take, subscribe, and one of them. */
+/** Store of the forms of all views: get, take and subscribe; `of` gives the form of one view. */
 export const createForms = () => {
   let all = formsOf(stored(KEPT));
   /** @type {Map<string, Signal<Forms[string] | undefined>>} */

@@ -5,7 +5,7 @@ import { inputsOf } from "/app/shape.js";
 const KEPT = "rocking.inputs";
 const ASIDE = "rocking.aside";
 
-/** The default restitution model, and the models that it is compared with. */
+/** The default restitution model, and the models for the comparison. */
 export const DEFAULT_MODELS = ["calibrated", "ked", "housner"];
 
 /** Initial content of a new project. */
@@ -53,7 +53,7 @@ export const createInputs = (start) => {
       const [before, next] = [/** @type {any} */ (current), changedAt(current, path.split("."), value)];
       if (JSON.stringify(next[top]) !== JSON.stringify(before[top])) become(next, new Set([top]));
     },
-    /** Show other inputs and keep those of the user: {inputs, label, mine}; null if there are no others.
+    /** Show other inputs, and keep the inputs of the user: {inputs, label, mine}; null without other inputs.
      * @param {Server.Inputs} document @param {string} text */
     lend: (document, text) => {
       const own = aside?.mine ? aside.inputs : current;

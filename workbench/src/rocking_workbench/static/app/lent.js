@@ -1,4 +1,4 @@
-/** Inputs of a link replace the inputs of the user, which are set aside and restored by a button. */
+/** Inputs of a link replace the inputs of the user. A button restores the inputs of the user. */
 
 import { html, render, signal } from "/parts/preact.js";
 import { Button, Note } from "/parts/fields.js";

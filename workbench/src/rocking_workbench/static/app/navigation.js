@@ -12,7 +12,7 @@ export const followAddress = (app, tabs) => {
     const parts = address.read();
     if (!address.isOurs(parts)) return;
     const { token, in: shared, view } = parts;
-    // Removed after use: a reload must not revert later edits.
+    // The fragment is removed after use, so that a reload does not revert later edits.
     if (token || shared) address.write({ view: view ?? tabs.current() });
     if (shared) take(app, shared);
     tabs.show(view ?? (token || shared ? tabs.current() : "body"), { quiet: true });

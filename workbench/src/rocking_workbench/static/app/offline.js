@@ -1,4 +1,4 @@
-/** If the server does not respond: try at intervals, and request the data when it responds. */
+/** If the server does not respond, calls are repeated at intervals. When it responds, all data are requested. */
 
 import { call } from "/app/api.js";
 

@@ -56,7 +56,7 @@ export const dashKey = ({ colour, dash = [], dots = false }) => {
 const ANGLES = ["#7F5CB9", "#69994D", "#8C6900", "#C6317C", "#237F8C", "#796E5B"];
 const DASHES = [[], [9, 3], [3, 3], [9, 3, 3, 3], [6, 2], [2, 2, 6, 2]];
 
-/** Style of the curve of an angle: that of its model, or a colour that no model has.
+/** Style of the curve of an angle: the style of its model, or a colour that no model uses.
  * @param {string} model @param {number} index @param {{ angles: number, models: number }} given2 */
 export const angleStyle = (model, index, { angles, models }) => {
   const own = modelStyle(model);
@@ -65,7 +65,7 @@ export const angleStyle = (model, index, { angles, models }) => {
   return { colour: ANGLES[at], dash: models < 2 ? DASHES[at] : own.dash };
 };
 
-/** Colour of the n-th curve that is not of a model. @param {number} index @returns {Look} */
+/** Colour of the n-th curve without a restitution model. @param {number} index @returns {Look} */
 export const seriesStyle = (index) => {
   const looks = [...models.values()].filter(({ colour }) => colour);
   return looks[index % looks.length];

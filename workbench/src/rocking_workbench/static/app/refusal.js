@@ -60,7 +60,7 @@ export const refusalWords = (refusal) => {
 
 /** Key of the form with the error. @param {Required<Server.Refusal>} refusal @returns {string | undefined} */
 export const keyOf = (refusal) => {
-  const ofOneFile = /^motions\[\d+\]\.files\.(.+\.\w+)$/.exec(refusal.parameter)?.[1]; // the field is of a key of one file
+  const ofOneFile = /^motions\[\d+\]\.files\.(.+\.\w+)$/.exec(refusal.parameter)?.[1]; // the error is in a field for one file
   return (ofOneFile ?? nameOf(refusal.parameter)).toLowerCase() || undefined;
 };
 
@@ -82,7 +82,7 @@ const sentenceOf = (error, units) => {
 /** @param {string[]} places @param {string} fault */
 const within = (places, fault) => places.reduceRight((text, location) => t("{location}: {fault}", { location, fault: text }), fault);
 
-// The field shows the rejected number: it is repeated in the unit of its range.
+// The message repeats the rejected number in the unit of its range, because the field shows this number.
 const MUST = ["{parameter} must be {allowed}, got {value}", "{parameter} must be a number {allowed}, got {value}"];
 /** @param {Required<Server.Refusal>} refusal @returns {Required<Server.Refusal>} */
 const inForm = (refusal) => {

@@ -31,7 +31,7 @@ const inSight = (line) => {
   dialog?.addEventListener("close", () => dialog.contains(line) && inSight(line), { once: true });
 };
 
-/** Clear the status line; with a text, only if it shows this text. */
+/** Clear the status line. With a text: only if the line shows this text. */
 export const hush = (text = shownText) => {
   if (text !== shownText) return;
   shownText = "";

@@ -1,4 +1,4 @@
-/** Steps as tabs; arrow keys move between them, by the ARIA practice. */
+/** Steps as tabs. Arrow keys move between the tabs, as in the ARIA guidelines. */
 
 /** Connect tabs and panels; calls onShow(name, before, quiet) after a change, and returns {show, current}.
  * @param {HTMLElement} list @param {(name: string, before: string | null, quiet: boolean) => unknown} onShow */

@@ -15,7 +15,7 @@ export const createViews = (app) => {
   };
   let current = "";
   return {
-    // Loading of one view does not block another; it is shown only if still selected.
+    // Loading of one view does not block other views. A loaded view is shown only if it is still selected.
     /** @param {string} name @param {string | null} [before] */
     show: async (name, before) => {
       current = name;
@@ -53,7 +53,7 @@ const load = async (name, app, forget) => {
   }
 };
 
-// A failed module is requested again at the next show of the view; the inputs are kept after a reload.
+// A failed module is requested again when the view is next shown. A reload keeps the inputs.
 /** @param {any} error */
 const failure = (error) => (error instanceof TypeError
   ? "The server did not send this view. Check that `rocking serve` is running."

@@ -38,7 +38,7 @@ const filled = (form, facts, spelling = spelled) => form.replace(PLACE, (match, 
   return spelling(facts[name]);
 });
 
-// A word in a field is translated too.
+// A word in a field of a text is translated too.
 /** @param {any} fact @returns {string} */
 const spelled = (fact) => (typeof fact === "string" ? translatedText(fact) : String(fact));
 

@@ -8,7 +8,7 @@ import { colour } from "/charts/style.js";
 
 /** @typedef {import("/vendor/uplot/uPlot.esm.js").default} uPlot @typedef {ReturnType<typeof frameOf>} Frame */
 
-const [ROW, BELOW, EDGE] = [20, 50, 2]; // of a legend, below the frame, and of curves that lie on its edge [px]
+const [ROW, BELOW, EDGE] = [20, 50, 2]; // height of a legend row, height below the frame, margin for curves on the edge of the frame [px]
 const TICK = 6; // height of a row of ticks on the axis [px]
 
 /** Chart content with its legend. @param {uPlot} plot @param {ChartOptions} options @param {Columns} data @param {Marks} marks */
@@ -68,7 +68,7 @@ const frameOf = (plot) => {
 
 /** @param {CanvasRenderingContext2D} pen @param {string} paint @param {number} width @param {number[]} dash @param {...number} ends */
 const line = (pen, paint, width, dash, ...ends) => {
-  if (!ends.every(Number.isFinite)) return; // on a missing axis
+  if (!ends.every(Number.isFinite)) return; // the axis is missing
   Object.assign(pen, { strokeStyle: colour(paint), lineWidth: width });
   pen.setLineDash(dash);
   pen.beginPath();
@@ -87,7 +87,7 @@ const drawAxes = (pen, plot, { left, top, width, height, x, y }) => {
     pen.fillText(across._values?.[k] ?? "", x(value), bottom + 19);
   });
   if (across._show) pen.fillText(across.label, left + width / 2, across._lpos + 11);
-  if (!up._show) return; // no value, no place for a text
+  if (!up._show) return; // without values there is no position for a text
   pen.save();
   pen.translate(up._lpos - 3, top + height / 2);
   pen.rotate(-Math.PI / 2);
@@ -135,7 +135,7 @@ const drawCurve = (pen, { x, y }, { colour: paint, dash = [], width = 1.6 }, xs,
   pen.stroke();
 };
 
-// Not clipped if they are on the edge of the frame.
+// Curves on the edge of the frame are not clipped.
 /** @param {CanvasRenderingContext2D} pen @param {Frame} frame @param {ChartSeries} series @param {(number | null)[]} xs @param {(number | null)[]} ys */
 const drawDots = (pen, { left, top, width, height, x, y }, { colour: paint }, xs, ys) => {
   pen.fillStyle = colour(paint);

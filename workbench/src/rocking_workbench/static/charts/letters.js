@@ -1,17 +1,17 @@
-/** Widths of words, and line breaks. */
+/** Widths of texts, and line breaks. */
 
 const pen = /** @type {CanvasRenderingContext2D} */ (document.createElement("canvas").getContext("2d"));
 
 /** @param {{ fontWeight: string, fontSize: string, fontFamily: string }} style */
 export const fontOf = ({ fontWeight, fontSize, fontFamily }) => `${fontWeight} ${fontSize} ${fontFamily}`;
 
-/** Words in a font. @param {string} text @param {string} [font] */
+/** Size of a text in a font. @param {string} text @param {string} [font] */
 export const measured = (text, font = "12px system-ui, sans-serif") => {
   pen.font = font;
   return pen.measureText(text);
 };
 
-/** Words in lines up to a width. @param {string} text @param {number} width @param {string} font */
+/** Lines of a text with a maximum width. @param {string} text @param {number} width @param {string} font */
 export const wrapped = (text, width, font) => {
   /** @type {string[]} */
   const lines = [];

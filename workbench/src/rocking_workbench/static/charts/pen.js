@@ -5,7 +5,7 @@ import { freshId, svg } from "/app/dom.js";
 /** @type {WeakMap<Path2D, string>} */
 const written = new WeakMap();
 
-/** A path for both pens. @param {string} d */
+/** A path for a canvas and for SVG. @param {string} d */
 export const pathOf = (d) => {
   const path = new Path2D(d);
   written.set(path, d);
@@ -15,9 +15,9 @@ export const pathOf = (d) => {
 /** @type {{ [word: string]: string | undefined }} */
 const ANCHORS = { center: "middle", right: "end" };
 /** @type {{ [word: string]: number | undefined }} */
-const BELOW = { top: 0.8, middle: 0.35 }; // fraction of the size of the letters
+const BELOW = { top: 0.8, middle: 0.35 }; // shift of the text / font size
 
-// Metres of a small body, or pixels of the page.
+// Numbers as text, with enough digits for metres of a small body and for pixels.
 /** @param {...number} values */
 const at = (...values) => values.map((value) => Number(value.toPrecision(7))).join(" ");
 
@@ -56,7 +56,7 @@ export class SvgPen {
   lineTo(x, y) { this.d += `${this.d ? "L" : "M"}${at(x, y)}`; }
   /** @param {number} x @param {number} y @param {number} wide @param {number} high */
   rect(x, y, wide, high) { this.d += `M${at(x, y)}h${at(wide)}v${at(high)}h${at(-wide)}Z`; }
-  /** A whole circle. @param {number} x @param {number} y @param {number} r */
+  /** A complete circle. @param {number} x @param {number} y @param {number} r */
   arc(x, y, r) { this.d += `M${at(x - r, y)}A${at(r, r)} 0 1 0 ${at(x + r, y)}A${at(r, r)} 0 1 0 ${at(x - r, y)}Z`; }
 
   /** Clip further drawing at the path. */
@@ -78,7 +78,7 @@ export class SvgPen {
   textOf(path) { return path ? written.get(path) : this.d; }
   /** @param {Path2D} [path] @param {string} [rule] */
   fill(path, rule) {
-    const [, paint, share] = /^(#.{6})(..)$/.exec(this.fillStyle) ?? [null, this.fillStyle, "ff"]; // no SVG 1.1 has #rrggbbaa
+    const [, paint, share] = /^(#.{6})(..)$/.exec(this.fillStyle) ?? [null, this.fillStyle, "ff"]; // SVG 1.1 does not support #rrggbbaa
     const opacity = at(this.globalAlpha * Number.parseInt(share, 16) / 255);
     this.put("path", { d: this.textOf(path), fill: paint, "fill-rule": rule, "fill-opacity": opacity });
   }

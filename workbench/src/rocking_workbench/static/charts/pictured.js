@@ -6,7 +6,7 @@ import { chartFiles, menuOf, saveFile, savePngOf } from "/charts/save.js";
 import { stillOf } from "/charts/still.js";
 import { Made } from "/parts/made.js";
 
-/** Figure of the page; the file contains more than its `title`, and `canvasOf` redraws a canvas.
+/** Figure of the page. The title of its file is `title` and `more`; `canvasOf` redraws a canvas.
  * @param {{ title: string, more?: string, about?: string, canvasOf?: (canvas: HTMLCanvasElement) => SVGElement, children?: any }} props */
 export const Pictured = ({ title, more = "", about = "", canvasOf, children }) => {
   const holder = useRef(null);

@@ -7,7 +7,7 @@ import { t } from "/app/words.js";
 import { wrapped } from "/charts/letters.js";
 import { colour, inLight } from "/charts/style.js";
 
-const LARGER = 2; // dots of a PNG for one of the page
+const LARGER = 2; // pixels of a PNG per pixel of the page
 const [MARGIN, LEAST, ROW] = [14, 360, 17];
 const FONT = "system-ui, sans-serif";
 /** @type {{ [subject: string]: string }} */
@@ -42,8 +42,8 @@ export const savePngOf = async (drawing, title) => {
   }
 };
 
-/** Menu of a figure: `draw` gives its shown content, `csv` its numbers. `data-own` is the description
- * with names of the user, `data-about` a description, one line per element, of the elements around it.
+/** Menu of a figure: `draw` gives its shown content, `csv` its numbers. The elements around it contain
+ * descriptions, one line per element: `data-own` with names of the user, `data-about` without names.
  * @param {string} title @param {() => Still} draw @param {string} [subject] @param {(() => string) | null} [csv] */
 export const chartFiles = (title, draw, subject = "chart", csv = null) => {
   const sheet = () => inLight(() => sheetOf(title, draw(), menu));
@@ -65,7 +65,7 @@ export const menuOf = (title, subject, kinds) => {
   }, kind));
   const head = el("summary", { class: "button quiet", "aria-label": t(SAVE[subject], { title }) }, "Save");
   const menu = el("details", { class: "chart-files" }, head, el("div", {}, items));
-  const leave = () => { // and the focus remains on the menu
+  const leave = () => { // the focus remains on the menu
     menu.open = false;
     head.focus();
   };

@@ -8,7 +8,7 @@ const LOOK = [
   "opacity", "paint-order", "font-family", "font-size", "font-weight", "text-anchor", "color",
 ];
 const OF_THE_PAGE = ["class", "data-testid", "aria-label", "aria-hidden", "role", "focusable"];
-const ABOVE = { overflow: "visible" }; // words may reach over the edge of a drawing
+const ABOVE = { overflow: "visible" }; // text may extend beyond the edge of a drawing
 
 /** @typedef {(rect: DOMRect) => { x: number, y: number, width: number, height: number }} Placing */
 
@@ -61,7 +61,7 @@ const plateOf = ({ backgroundColor: fill, borderTopWidth: width, borderTopColor:
   return svg("rect", { ...where, rx: Math.min(parseFloat(r) || 0, where.height / 2), fill: bare ? "none" : fill, ...edge });
 };
 
-const PIECES = /[\u2e80-\u9fff\uff00-\uffef]|[^\s\u2e80-\u9fff\uff00-\uffef]+/g; // possible line breaks are between these
+const PIECES = /[\u2e80-\u9fff\uff00-\uffef]|[^\s\u2e80-\u9fff\uff00-\uffef]+/g; // a line may break between two of these pieces
 
 /** Lines of a text, as on the page. @param {Text} node @param {Placing} at */
 const linesOf = (node, at) => {

@@ -21,13 +21,13 @@ document.addEventListener("rocking:theme", () => {
   listeners.forEach((listener) => listener());
 });
 
-/** Run a function at each change of the theme; returns a function that stops this. @param {() => unknown} listener */
+/** Run a function at each change of the theme; returns a function that removes the listener. @param {() => unknown} listener */
 export const onTheme = (listener) => {
   listeners.add(listener);
   return () => listeners.delete(listener);
 };
 
-/** Result of `make` with the light theme, not visible to the user: files use light colors. @type {<Of>(make: () => Of) => Of} */
+/** Result of `make` in the light theme, since files use light colours. The page does not change visibly. @type {<Of>(make: () => Of) => Of} */
 export const inLight = (make) => {
   const { dataset } = document.documentElement;
   const { theme } = dataset;
@@ -38,7 +38,7 @@ export const inLight = (make) => {
     return make();
   } finally {
     dataset.theme = theme;
-    document.dispatchEvent(new CustomEvent("rocking:theme")); // figures of the light theme are updated
+    document.dispatchEvent(new CustomEvent("rocking:theme")); // figures that now have light colours are updated
   }
 };
 

@@ -13,7 +13,7 @@ import { t } from "/app/words.js";
 
 const ROW = 34;
 
-/** Rows {model, value, low?, high?} on one axis {low, high, label}; `extras(axis, frame)` draws beneath.
+/** Rows {model, value, low?, high?} on one axis {low, high, label}; `extras(axis, frame)` draws below the rows.
  * @param {Row[]} rows @param {RowOptions} options */
 export const rowPicture = (
   rows, { width, domain, label, testid, title, extras, extraHeight = 0, digits = 4 },

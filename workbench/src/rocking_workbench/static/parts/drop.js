@@ -26,7 +26,7 @@ export const Drop = ({ label, name = label, accept, many = false, folders = many
   /** @param {any} event */
   const chosen = ({ target }) => {
     const files = [...target.files];
-    target.value = ""; // otherwise the corrected file could not be chosen again
+    target.value = ""; // otherwise the browser ignores a second choice of the same file
     take(files);
   };
   return html`

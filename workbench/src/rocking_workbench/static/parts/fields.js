@@ -56,7 +56,7 @@ const saidOf = (id, error) => ({ id, "aria-describedby": `${id}-about`, "aria-in
 const TURNS = { ArrowUp: 1, ArrowDown: -1 };
 
 /** Number with its unit; decimal commas and arrow keys are allowed. `on` receives numbers within the limits only, and
- * null for an empty optional field; `moves`: not 0; errors of a field with `aside` are not errors of the inputs.
+ * null for an empty optional field; `moves`: 0 is not allowed; errors of a field with `aside` are not errors of the inputs.
  * @param {NumberProps} props */
 export const NumberField = ({
   label, unit = "", value, on, help, error = "", kind, hidden, min, above, max, step, integer, moves, optional, aside = false,
@@ -87,7 +87,7 @@ export const NumberField = ({
       value=${held.text} onInput=${({ target }) => take(target.value)} onKeyDown=${turn} ...${more} /><//>`;
 };
 
-/** Line of text, or a "textarea" according to `tag`; `type`: of the box.
+/** Line of text, or a "textarea" according to `tag`; `type`: type of the box.
  * @param {FieldProps<any> & { id?: string, tag?: string, type?: string }} props */
 export const Field = ({
   label, id: givenId, name, unit, value, on, help, error: message = "", kind, hidden, tag = "input", type = "text", ...more
@@ -120,7 +120,7 @@ export const Choice = ({ label, name, value, on, chosen, options, own = false, h
   const take = ({ target }) => {
     changed();
     put(options[target.selectedIndex][0]);
-    target.value = shown; // until the form has accepted it
+    target.value = shown; // the old choice remains visible until the form accepts the new choice
   };
   return html`<${Frame} id=${id} label=${label} help=${help} error=${error} hidden=${hidden}>
     <select ...${saidOf(id, error)} value=${shown} onChange=${take} ...${more}>
@@ -195,7 +195,7 @@ export const wrongIn = (form) => /** @type {HTMLElement[]} */ ([...form.querySel
 
 /** Focus the first invalid field after drawing. @param {Element} form */
 export const toWrong = (form) => setTimeout(() => {
-  for (const box of form.querySelectorAll("details [aria-invalid=true]")) /** @type {HTMLDetailsElement} */ (box.closest("details")).open = true; // otherwise it is not visible
+  for (const box of form.querySelectorAll("details [aria-invalid=true]")) /** @type {HTMLDetailsElement} */ (box.closest("details")).open = true; // otherwise the field is not visible
   wrongIn(form)?.focus();
 });
 

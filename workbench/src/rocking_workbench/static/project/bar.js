@@ -61,7 +61,7 @@ const Step = ({ sign, label, on, go }) => html`
 const Clash = ({ projects }) => {
   const dialog = useRef(null);
   useEffect(() => dialog.current.showModal(), []);
-  // Browsers close it at a second Escape in any case: it is opened again until a choice is made.
+  // Browsers close the dialog at a second Escape. It is opened again until the user makes a choice.
   const stay = () => projects.clash.value && dialog.current?.showModal();
   /** @param {boolean} mine */
   const settle = (mine) => () => projects.settle(mine);

@@ -18,7 +18,7 @@ export const PARTS = {
 /** State of the open project; `first`: content of a new project. @param {App} app @param {Server.Inputs} first */
 export const createProjects = (app, first) => {
   /** @type {Signal<Server.ProjectFacts>} */
-  const here = signal(null); // until `start`
+  const here = signal(null); // null until the call of `start`
   const saving = signal("saved");
   /** @type {Signal<{ theirs: Server.WholeProject, mine: Own } | null>} */
   const clash = signal(null);
@@ -74,7 +74,7 @@ export const createProjects = (app, first) => {
   let leaving = false; // later requests continue after the page is closed
   /** @param {string} suffix @param {unknown} [json] @returns {Promise<any>} */
   const ask = (suffix, json) => app.call(`projects/${here.value.id}${suffix}`, { json, keepalive: leaving });
-  // In order: each change contains the number of the previous version.
+  // Requests are sent in order, because every change contains the number of the previous version.
   /** @type {<Of>(work: () => Promise<Of>) => Promise<Of>} */
   const inLine = (work) => {
     line = line.then(work, work);
@@ -115,7 +115,7 @@ export const createProjects = (app, first) => {
       app.say("The project was deleted elsewhere. It is restored with your changes.");
       if (alone) {
         adopt(theirs);
-        save(); // after the present one, which awaits the result
+        save(); // starts after the end of the present save
         return;
       }
     }
@@ -130,10 +130,10 @@ export const createProjects = (app, first) => {
     last = theirs.document;
     adopt(theirs);
     saving.value = all ? "saved" : "saving";
-    if (!all) save(); // as above
+    if (!all) save(); // starts after the end of the present save
   };
 
-  // Shows remote changes of other parts; false without effect if both changed the same part.
+  // Shows remote changes of other parts. If both sides changed the same part: no effect, returns false.
   /** @param {any} document */
   const join = (document) => {
     const [before, mine, theirs] = [last, own(), document].map(partsOf);
@@ -186,7 +186,7 @@ export const createProjects = (app, first) => {
   /** @param {Iterable<string>} keys */
   const touched = (keys) => {
     if (taking || !here.value) return;
-    // Repeated display changes nothing.
+    // Displaying the same state again changes nothing.
     if (!changed.size && same(own(), last)) return;
     for (const key of keys) changed.add(key);
     if (!changed.size) return;
@@ -250,7 +250,7 @@ export const createProjects = (app, first) => {
         tell();
       });
     },
-    /** After a change elsewhere: show the saved version, or keep the shown one as a copy.
+    /** After a change elsewhere: show the saved version, or keep the shown version as a copy.
      * @param {boolean} keepMine */
     settle: (keepMine) => inLine(async () => {
       if (!clash.value) return;

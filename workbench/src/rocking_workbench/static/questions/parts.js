@@ -43,7 +43,7 @@ export const recordEndings = ({ info }) => [
   ...new Set([...info.formats.flatMap(({ suffixes }) => suffixes), ".txt", ".csv", ".dat", ".zip", ".bbp", ".xml"]),
 ].join(",");
 
-/** Files by dropping or choosing; `files`: signal of uploaded files, the last one, or all with `adds`; `name`: key in
+/** Drop area and file dialog. `files`: signal with the last uploaded file, or with all files if `adds`; `name`: key in
  * rejections.
  * @param {{ label: string, name?: string, help?: string, accept?: string, files: Signal<SentFile[]>, many?: boolean, adds?: boolean, questions: Questions, app: App }} props */
 export const FileDrop = ({ files, name = "files", many = false, adds = many, questions, app, help, ...more }) => {

@@ -12,7 +12,7 @@ export class Clock {
     this.before = -1;
   }
 
-  /** Start; from the beginning if it is at the end. */
+  /** Start. At the end of the animation, start again from the beginning. */
   start() {
     if (this.now >= this.end) this.now = 0;
     this.running = this.end > 0;

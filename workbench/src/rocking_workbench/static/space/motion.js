@@ -11,7 +11,7 @@ import { Played } from "/space/played.js";
 import { Scene } from "/space/scene.js";
 import { t } from "/app/words.js";
 
-const WORTH = 0.01; // fraction of the largest loss
+const WORTH = 0.01; // smallest energy loss of a marked impact / largest loss
 const UPDATE_INTERVAL = 100; // between two updates of text and curve during playback [ms]
 const SPEEDS = [["1", "1\u00d7, real speed"], ["2", "2\u00d7"], ["0.5", "0.5\u00d7"], ["0.1", "0.1\u00d7, slow motion"]];
 /** @type {{ [key: string]: number }} */

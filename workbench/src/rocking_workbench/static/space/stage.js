@@ -7,7 +7,7 @@ import { labelTexture, markTexture } from "/space/textures.js";
 const VIEW = 35; // field of view of the camera [degrees]
 const FIRST = { turned: -1.1, raised: 0.3 };
 const [LOWEST, HIGHEST] = [0.03, 1.5];
-const FINEST = 2; // pixels of the canvas per pixel of the page
+const FINEST = 2; // largest number of canvas pixels per pixel of the page
 
 /** Picture of one body, rendered on request. */
 export class Stage {
@@ -62,7 +62,7 @@ export class Stage {
     this.place(null, [0, 0, model.height]);
   }
 
-  /** Faces that closed holes: in another colour, with their edges. @param {Float32Array} corners */
+  /** Faces that close holes, in another colour and with their edges. @param {Float32Array} corners */
   patch(corners) {
     const { three, body } = this;
     const faces = new three.BufferGeometry().setAttribute("position", new three.BufferAttribute(corners, 3));
@@ -237,7 +237,7 @@ export class Stage {
     this.repaint();
   }
 
-  /** Look from a direction: from x towards y, and above the ground [rad]; near: times the first distance. */
+  /** Look from a direction: from x towards y, and above the ground [rad]; near: distance / first distance. */
   look({ turned = this.turned, raised = this.raised, near = this.near }) {
     this.turned = turned;
     this.raised = Math.min(HIGHEST, Math.max(LOWEST, raised));

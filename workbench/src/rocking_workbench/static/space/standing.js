@@ -9,14 +9,14 @@ import { calm } from "/scene/theme.js";
 import { Scene } from "/space/scene.js";
 import { t } from "/app/words.js";
 
-const SCANNED = /^file = ".*(?<!\.toml)"$/m; // a run with a file without axes
+const SCANNED = /^file = ".*(?<!\.toml)"$/m; // matches a run with a scan, which has no axes of its own
 /** @typedef {SpaceStage & { setIn: (pose: SpacePose) => void, settleIn: (pose: SpacePose) => void }} Setting */
 
 const SETTLES = 700; // duration of the rotation into another pose [ms]
 const FEW = 12; // number of listed poses
 const MOST = 40; // largest number of marks of a kind; a rough scan has hundreds
 const COLOURS = [["rise", "height of the centre of mass"], ["plain", "none"]];
-// rounding errors are 0
+// rounding errors are shown as 0
 /** @param {number} value @param {number} most */
 const joules = (value, most) => number(Math.abs(value) < 1e-9 * most ? 0 : value, 3);
 /** @param {number | null | undefined} value */

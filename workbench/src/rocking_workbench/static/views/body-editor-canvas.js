@@ -26,7 +26,7 @@ export const createCanvas = (editor, element) => {
   });
   const wrong = el("p", { class: "board-refusal", "aria-hidden": "true", hidden: true });
   element.prepend(board, wrong);
-  let view = /** @type {Viewport} */ (/** @type {unknown} */ (null)); // if the canvas has no width yet
+  let view = /** @type {Viewport} */ (/** @type {unknown} */ (null)); // null as long as the canvas has no width
   let width = 0;
   /** @type {any} */
   let drag = null;
@@ -210,8 +210,8 @@ const fitted = (regions, width, photo) => {
   return viewport(roomy, { width, height: HEIGHT, margin: { left: 44, right: 12, top: 10, bottom: 26 } });
 };
 
-// The visible step is the snap step: the typed one, doubled until its cells are visible; without one, a round step
-// with visible cells.
+// The visible step is also the snap step. It is the typed step, doubled until its cells are visible, or a round step
+// with visible cells if no step is typed.
 /** @param {Viewport} view @param {number | null | undefined} typed */
 const gridStep = (view, typed) => {
   if (!typed) return tidy(roundStep(CELL / view.scale, 1));

@@ -48,7 +48,7 @@ export const withHole = (regions, region, hole) =>
 export const withDensity = (regions, region, density) =>
   regions.with(region, tidied({ ...regions[region], density: density ?? undefined }));
 
-/** Translated such that the lowest point is at y = 0.
+/** Regions moved vertically such that the lowest point is at y = 0.
  * @param {Region[]} regions @param {Exact} [exact] @returns {Region[]} */
 export const onTheGround = (regions, exact = (value) => value) => {
   const low = lowest(regions.flatMap((region) => region.outline).map((point) => point[1]));
@@ -149,7 +149,7 @@ export const doubled = (regions, position, exact = (value) => value) => {
   });
 };
 
-/** The place of the vertex nearest to a point within reach, of equals the chosen one; null if there is none.
+/** Index of the vertex nearest to a point within reach, with priority for the chosen vertex; null if there is none.
  * @param {Region[]} regions @param {number[]} point @param {number} reach @param {Place} chosen @returns {Place | null} */
 export const nearest = (regions, [x, y], reach, chosen) => {
   let best = reach;

@@ -55,7 +55,7 @@ const changeUnits = (state, factor) => {
   if (state.photo) for (const key of ["x", "y", "scale"]) state.photo[key] *= factor;
 };
 
-/** Drawing and its changes: `tell()` redraws it; the tools and the canvas use it.
+/** Drawing and its changes: `tell()` redraws the drawing. The tools and the canvas use this object.
  * @param {App} app */
 export const createEditor = (app) => {
   const history = model.createHistory();
@@ -66,7 +66,7 @@ export const createEditor = (app) => {
   const body = () => app.inputs.get().body;
   const regions = () => editable(body().section, app.body.get(), body().units);
   let { units } = body();
-  // Feet and depth are typed next to the canvas: an undo step includes them only if it changed them.
+  // Feet and depth are typed next to the canvas: an undo step includes feet and depth only if it changed them.
   const now = ({ withSection = false } = {}) => {
     const { section, units: of } = body();
     return { section, regions: regions(), units: of, withSection };

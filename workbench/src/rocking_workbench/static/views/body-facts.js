@@ -40,7 +40,7 @@ export const Facts = ({ app, facts: body }) => {
     csv=${() => app.download("table/body.csv", app.inputs.get(), "body.csv")} />`;
 };
 
-// Rounding errors are 0: smaller than the body by a factor of 1e15.
+// Rounding errors, below 1e-14 of the semi-diagonal, are shown as 0.
 /** @param {number} length @param {Server.DescribedBody} body */
 const settled = (length, { sides }) =>
   (Math.abs(length) < 1e-14 * sides.right.semi_diagonal ? 0 : length);

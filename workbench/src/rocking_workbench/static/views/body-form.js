@@ -18,7 +18,7 @@ export const Form = ({ app, body, refusal }) => {
   const { units } = body;
   /** @param {string} next */
   const become = (next) => {
-    const now = app.inputs.get().body; // the last edit is not visible yet
+    const now = app.inputs.get().body; // the properties do not contain the last edit yet
     kept.set(shapeOf(now), now);
     const before = kept.get(next);
     const again = before ? renamed(inUnits(before, units), now.name) : asShape(now, next, app.body.get());

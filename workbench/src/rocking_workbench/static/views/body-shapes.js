@@ -39,7 +39,7 @@ const changedTable = (body, change) => {
 /** @param {any} table */
 const densitiesOf = ({ density, region = [] }) => [density, ...region.map((/** @type {Region} */ item) => item.density)];
 
-// A table's own density and those of its regions, as long as they are the same regions; of none of them none.
+// Table with the given densities. The regions receive densities only if their number is the same.
 /** @param {any} table @param {any[]} [densities] */
 const withDensities = (table, [density, ...others] = []) => {
   const same = others.length === table.region?.length ? others : [];

@@ -17,7 +17,7 @@ export const inUnits = (body, units) => {
 /** Convert a length in metres to a unit. @param {number} length @param {Unit} units */
 export const fromMetres = (length, units) => exact(length, 1 / METRES[units]);
 
-// Errors of binary arithmetic are rounded off only if nothing else is.
+// Rounds off errors of binary arithmetic, if this does not change the value beyond these errors.
 /** @param {number} value @param {number} factor */
 const exact = (value, factor) => {
   const neat = tidy(value * factor);

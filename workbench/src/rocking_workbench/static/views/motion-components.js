@@ -7,7 +7,7 @@ import { Choice } from "/parts/fields.js";
 export const Components = ({ names, motion, onChange }) => {
   if (names.length < 2) return null;
   const main = motion.component ?? names.find((name) => name !== motion.vertical);
-  // a link may give the same component for both: then both lists are complete, so that either can be changed
+  // a link may state one component twice; then both lists are complete, so that the user can change each choice
   const clash = motion.vertical === main;
   /** @param {string | null} [taken] */
   const optionsBut = (taken) => names.filter((name) => clash || name !== taken).map((name) => [name, name]);

@@ -76,7 +76,7 @@ export const createRecord = (app, onChange) => {
     blamed.value = blamedOf(openNeeds.value.answer.needs, error, message);
     status.value = blamed.value ? null : reasonNote(message, error.places);
   };
-  // Counts are no accelerations without their StationXML: both go to the step that reads them together.
+  // Counts become accelerations with their StationXML file. One step receives both files.
   /** @param {File[]} files */
   const together = async (files) => {
     try {
@@ -136,7 +136,7 @@ export const Record = ({ app, record, motion, lost, onChange }) => {
   useEffect(() => void (motion && rememberTold(motion)), [motion]);
   useEffect(() => {
     if (isAnswered || !motion) return;
-    // data of a file uploaded before this load of the page; the error of a motion is shown there
+    // requests the data of a file that was uploaded before this page was loaded
     /** @param {Server.RecordFacts} facts */
     const learn = (facts) => app.inputs.get().motion?.record === motion.record && (answer.value = facts);
     app.call(`records/${motion.record}`, { query: picked(motion, TOLD) }).then(learn, () => {});

@@ -16,7 +16,7 @@ const TITLES = {
 };
 const WORDS = [["pseudo_acceleration", "Acceleration"], ["pseudo_velocity", "Velocity"], ["spectral_displacement", "Displacement"]];
 
-// a logarithmic axis has no place for a period or a value of zero
+// a logarithmic axis cannot show a period or a value of zero
 /** @param {number[]} periods @param {number[]} values */
 const positive = (periods, values) => {
   const kept = periods.map((_, k) => k).filter((k) => periods[k] > 0 && values[k] > 0);

@@ -17,7 +17,7 @@ const write = (entries) => {
   try {
     localStorage.setItem(KEPT, JSON.stringify(Object.fromEntries(entries.slice(-MOST))));
   } catch {
-    // a browser without storage needs the data again
+    // without storage in the browser, the user must enter the data again
   }
 };
 

@@ -7,7 +7,7 @@ import { filled } from "/questions/parts.js";
 import { t } from "/app/words.js";
 
 const KEYS = ["units", "time_step", "format", "skip"];
-const MOST_REASONS = 12; // files that get their fields without being chosen
+const MOST_REASONS = 12; // largest number of unread files that are listed with their fields
 
 /** Options of the uploaded files as a table of a job; empty if no file has options.
  * @param {FileTexts} byFile @param {SentFile[]} records @param {App} app */

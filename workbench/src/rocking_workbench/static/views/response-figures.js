@@ -40,7 +40,7 @@ const ENERGIES = [
   { key: "work_of_ground", label: "work of the ground", colour: "#8A8A8A", dash: [2, 3] },
 ];
 
-/** The longest response. @param {Server.ResponseFacts[]} answers */
+/** The response with the longest duration. @param {Server.ResponseFacts[]} answers */
 export const longest = (answers) => {
   const ends = answers.map(({ series }) => series.time[series.time.length - 1]);
   return answers[ends.indexOf(highest(ends))];
@@ -72,7 +72,7 @@ const KINDS = {
     title: (lead) => t("Energy ({model})", { model: wordsOf(lead.label) }),
     y: { label: "", unit: "J" },
     series: () => ENERGIES,
-    // over the time of all figures
+    // the abscissa is the time of all figures
     data: (answers, lead) => [
       [...lead.series.time, longest(answers).series.time.at(-1) ?? null],
       ...ENERGIES.map(({ key }) => [...untilFall(lead, lead.series[key]), null]),
@@ -114,7 +114,7 @@ const DASHED = { rotation: "Dashed: the slenderness angles.", friction: "Dashed:
 /** @param {{ kind: string, answers: Server.ResponseFacts[], lead: Server.ResponseFacts, rows: Ticks[], ticked: string, interval: Point | null, friction: number, time: Time, height: number }} props */
 const OneFigure = ({ kind, answers, lead, rows, ticked, interval, friction, time, height }) => {
   const { title, y, series, data } = KINDS[kind];
-  // the given friction remains visible
+  // the range includes the given friction
   const held = kind === "friction" && { range: (/** @type {unknown} */ _, /** @type {number} */ low, /** @type {number | null} */ high) => [0, 1.1 * Math.max(high ?? 0, friction)], of: friction };
   const shape = {
     title: typeof title === "string" ? title : title(lead), x: TIME, y: { ...y, ...held }, series: series(answers), height,

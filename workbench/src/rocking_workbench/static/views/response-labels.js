@@ -17,7 +17,7 @@ export const styleOf = (label) => {
 /** Returns the title of a restitution. @param {string} label */
 export const wordsOf = (label) => modelWords(curveKey(label));
 
-/** A short line in the colour and the true dash of a restitution. @param {{ label: string }} props */
+/** A short line in the colour and dash of a restitution. @param {{ label: string }} props */
 export const Swatch = ({ label }) => {
   const { colour, dash } = styleOf(label);
   return html`<svg class="dash-key" width="34" height="10" viewBox="0 0 34 10" aria-hidden="true" focusable="false">

@@ -27,7 +27,7 @@ const commonTime = (histories) => {
   return grid;
 };
 
-const grids = new WeakMap(); // for all curves of several responses
+const grids = new WeakMap(); // common times by responses, for all their curves
 
 /** @param {Server.ResponseFacts[]} answers */
 const gridOf = (answers) => {

@@ -29,7 +29,7 @@ const scaledTable = (table, factor) => {
   return Object.fromEntries(entries);
 };
 
-/** Whether the size of a body can be changed here: text of a drawing is not scaled.
+/** True if the size of a body can be changed here; regions without an outline, such as WKT text, are not scaled.
  * @param {Server.BodyInput} body */
 export const canBeScaled = (body) => (body.section?.region || []).every(({ outline }) => outline !== undefined);
 

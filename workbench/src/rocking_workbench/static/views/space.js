@@ -59,7 +59,7 @@ const Space = ({ app, questions }) => {
   /** @param {string} sha */
   const choose = (sha) => {
     chosen.value = sha;
-    pose.value = null; // which belongs to the previous scan
+    pose.value = null; // the pose belongs to the previous scan
   };
   const scans = {
     get value() { return files.value; },
@@ -99,7 +99,7 @@ const Space = ({ app, questions }) => {
     pose.value = { number: number_, up: direction };
     app.say(t("The next run uses the body in pose {pose}.", { pose: number_ }));
   };
-  // One component for the life of the view: another one would redraw the scene at every typed character.
+  // The view keeps one component. A new component would redraw the scene at every typed character.
   const Found = useRef((/** @type {any} */ { answer, question }) => html`
     <${Answer} key=${question.id} answer=${answer} question=${question} onPose=${goOn} />`).current;
   return html`

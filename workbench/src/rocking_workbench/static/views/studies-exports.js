@@ -14,7 +14,7 @@ const NO_FIT = "NRML needs a fitted curve. This study has none.";
 /** @param {any} result @param {number} k */
 const hasFit = (result, k) => Object.keys(result.analyses?.[k]?.curves ?? {}).length > 0;
 
-/** Buttons that save the result of a study, NRML of the restitution that is `chosen`.
+/** Buttons that save the result of a study, NRML for the `chosen` restitution.
  * @param {{ app: App, study: Server.StudyFacts, result: any, chosen: { restitution: number } }} props */
 export const Exports = ({ app, study, result, chosen }) => {
   const notice = useSignal("");

@@ -1,4 +1,4 @@
-/** The question of a study without a form of its own: fields of the keys of its table. */
+/** Form of a study without a special form: one field for each key of its table. */
 import { html, useSignal } from "/parts/preact.js";
 import { KeyField } from "/parts/fields.js";
 import { filled } from "/questions/parts.js";

@@ -1,4 +1,4 @@
-/** The question of an overturning map: two axes. */
+/** Form of an overturning map: two axes. */
 import { html, useMemo, useSignal } from "/parts/preact.js";
 import { Choice } from "/parts/fields.js";
 import { greek } from "/views/studies-words.js";
@@ -10,7 +10,7 @@ const OF_PULSES = new Set(["frequency_ratio", "amplitude_ratio", "period"]);
 
 const SIDES = { x: "Horizontal axis", y: "Vertical axis" };
 
-/** Form of a map: its axes are those of the motion of the inputs until others are chosen that this motion has.
+/** Form of a map. The motion of the inputs sets the default axes, and the choice of axes.
  * @param {{ app: App, question: StudyQuestion }} props */
 export const MapQuestion = ({ app, question }) => {
   const own = useSignal({});

@@ -13,10 +13,10 @@ export const Range = ({ name, unit = "", range }) => {
   </fieldset>`;
 };
 
-/** A range as a job file writes it. @param {{ from: number, to: number, count: number, [more: string]: unknown }} range */
+/** A range in the notation of a job file. @param {{ from: number, to: number, count: number, [more: string]: unknown }} range */
 export const rangeOf = ({ from, to, count, ...more }) => ({ from, to, count: Math.round(count), ...more });
 
-/** The usual range of an axis, or of a measure, to be changed by its fields. @param {App} app @param {string} name @param {number} count */
+/** Default range of an axis or of a measure; the fields of the range change it. @param {App} app @param {string} name @param {number} count */
 export const usualRange = ({ info }, name, count) => {
   const [from, to] = info.axes.find((axis) => axis.name === name)?.usual ?? [1, 12];
   return { from, to, count };
@@ -25,7 +25,7 @@ export const usualRange = ({ info }, name, count) => {
 /** Limits of a numeric field from the description of its key. @param {Server.KeyFacts} facts */
 export const limitsOf = ({ ge, gt, le }) => ({ min: ge ?? undefined, above: gt ?? undefined, max: le ?? undefined });
 
-/** The unit that a label has, of none nothing. @param {{ unit: string }} [axis] */
+/** Unit of a label; empty if there is no unit. @param {{ unit: string }} [axis] */
 export const unitOf = ({ unit } = { unit: "" }) => (unit === "1" ? "" : unit);
 
 /** Motions of a job from the motion of the inputs. @param {Server.Inputs} inputs */

@@ -8,7 +8,7 @@ import { t, userText } from "/app/words.js";
 
 const EMPTY = "No record is uploaded. Add records in the step Motion.";
 
-/** List of the records, read at every visit; `taken.current()` gives those that are ticked as motions of a job.
+/** List of the records, read at every visit; `taken.current()` returns the selected records as motions of a job.
  * @param {{ app: App, taken: { current: any }, visits: number, hidden: boolean }} props */
 export const RecordChoice = ({ app, taken, visits, hidden }) => {
   const [stored, looked, left, refused] = [useSignal([]), useSignal({}), useSignal(new Set()), useSignal("")];

@@ -1,4 +1,4 @@
-/** The question of rocking spectra: slendernesses and periods of blocks under the motion of the inputs. */
+/** Form of rocking spectra: slenderness values and periods of blocks under the motion of the inputs. */
 import { html, useRef } from "/parts/preact.js";
 import { Range, motionsOf, rangeOf } from "/views/studies-form-parts.js";
 

@@ -20,7 +20,7 @@ const kindsOf = ({ study_kinds: kinds }) => {
   return new Map(tables.flatMap((table) => kinds.filter((kind) => kind.table === table).map((kind) => [table, kind])));
 };
 
-/** A name that no study has yet. @param {string} name @param {Set<string>} taken */
+/** A name that is not used by another study. @param {string} name @param {Set<string>} taken */
 const fresh = (name, taken) => {
   let candidate = name;
   for (let k = 2; taken.has(candidate); k += 1) candidate = `${name} ${k}`;
@@ -37,7 +37,7 @@ export const StudyForm = ({ app, visits, onLaunched, taken }) => {
   const labelOf = (table) => LABELS[table] ?? table.replaceAll("_", " ");
   const Question = QUESTIONS[kind.value] ?? KeysQuestion;
 
-  /** A field in error holds its last good number, which is not the one on the screen. */
+  /** A field with an error keeps its last valid number, which differs from the number on the screen. */
   const faultOf = () => {
     const wrong = wrongIn(form.current);
     wrong?.focus();

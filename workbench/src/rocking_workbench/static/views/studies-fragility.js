@@ -50,7 +50,7 @@ const whyNone = (verdict, threshold, unit) => stopped(t("No curve: {reason}", {
   reason: verdict ? plainWords(t(verdict)) : stepWords(threshold, unit),
 }));
 
-/** Of uplift under a measure that decides it nothing is fitted: it is no matter of chance.
+/** Text for uplift without a fit: the measure determines uplift exactly, so that there is no probability to fit.
  * @param {number | null} threshold @param {string} unit */
 const stepWords = (threshold, unit) => (threshold === null ? "these fractions allow no fit"
   : t("no uplift below {acceleration}, always uplift above it: a step from 0 to 1", { acceleration: quantity(threshold, unit) }));

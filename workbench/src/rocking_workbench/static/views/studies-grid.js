@@ -10,7 +10,7 @@ const LEFT = 64;
 const BOTTOM = 52;
 const TOP = 12;
 const RIGHT = 14;
-const FINE = 2; // dots of a file for one of the page
+const FINE = 2; // pixels of a file per pixel of the page
 
 /** @param {number[]} values */
 const isGeometric = (values) => {
@@ -60,7 +60,7 @@ export const ticksOf = ({ low, high, log }) => {
   );
 };
 
-/** The cell under the middle of each of some dots along the part of an axis that is seen.
+/** Index of the cell at the middle of every pixel along the visible part of an axis.
  * @param {number[]} edges @param {number} dots @param {number[]} part */
 const cellsOf = (edges, dots, [from, to]) => {
   let k = 0;
@@ -72,9 +72,9 @@ const cellsOf = (edges, dots, [from, to]) => {
 };
 
 const WHOLE = [0, 1];
-const LEAST = 4; // cells across, however close one looks
+const LEAST = 4; // smallest number of visible cells along an axis
 
-/** Some length of an axis around a place, within it. @param {number} position @param {number} length */
+/** Interval of a given length around a position, within the axis. @param {number} position @param {number} length */
 const around = (position, length) => {
   const from = Math.min(Math.max(position - length / 2, 0), 1 - length);
   return [from, from + length];
@@ -92,7 +92,7 @@ export const createGrid = (canvas, x, y) => {
   const across = axisOf(x);
   const up = axisOf(y);
   let size = { width: 300, height: 300 };
-  let ratio = 1; // dots of the screen for one of the page
+  let ratio = 1; // pixels of the screen per pixel of the page
   /** @type {{ by?: PaintOf, lines?: Lines }} */
   let painted = {};
   let seen = [WHOLE, WHOLE]; // fractions of the axes
@@ -140,7 +140,7 @@ export const createGrid = (canvas, x, y) => {
     );
   };
 
-  // Every dot of the screen has the colour of its cell: a map of a million cells costs no more than a small one.
+  // Every pixel of the screen has the colour of its cell, so that the time does not depend on the number of cells.
   /** @param {CanvasRenderingContext2D} pen @param {PaintOf} paintOf @param {number} [dense] */
   const imageOf = (pen, paintOf, dense = ratio) => {
     /** @param {number} from @param {number} length */
@@ -257,7 +257,7 @@ export const createGrid = (canvas, x, y) => {
 
   /** @param {CanvasRenderingContext2D} pen @param {Lines} lines */
   const drawLines = (pen, lines) => {
-    pen.strokeStyle = "#1d1f1e"; // the map has the same colours in the dark
+    pen.strokeStyle = "#1d1f1e"; // the map has the same colours in the dark theme
     pen.lineWidth = 1.5;
     for (const line of lines) {
       pen.beginPath();
@@ -281,7 +281,7 @@ export const createGrid = (canvas, x, y) => {
     if ([right, high].some((share, k) => share < seen[k][0] || share > seen[k][1])) return null;
     return { ix: Math.max(0, indexOf(across.edges, right)), iy: Math.max(0, indexOf(up.edges, high)) };
   };
-  /** Look closer at a cell by a factor, or from further away below 1.
+  /** Zoom at a cell by a factor; a factor below 1 zooms out.
    * @param {Cell | null} aim @param {number} factor */
   const closer = (aim, factor) => {
     const places = aim ? placeOf(aim) : seen.map(([from, to]) => (from + to) / 2);

@@ -89,7 +89,7 @@ const difference = (result, k, other) => {
   return { value: "difference", text: t("Difference to {model}", { model: names[1] }), legend, paint };
 };
 
-/** One cell in words. @param {MapFound} result @param {number} k @param {Cell} cell */
+/** Description of one cell. @param {MapFound} result @param {number} k @param {Cell} cell */
 export const cellWords = (result, k, { ix, iy }) => {
   const outcome = result.outcome[k][iy][ix];
   const impacts = result.impacts[k][iy][ix];

@@ -25,7 +25,7 @@ const KINDS = {
 };
 const BUSY = ["waiting", "running"];
 
-/** Seconds in words that a person would use. @param {number} seconds */
+/** A duration in seconds as text with a suitable unit. @param {number} seconds */
 const duration = (seconds) => {
   if (seconds < 1.5) return t("1 s");
   if (seconds < 90) return `${Math.round(seconds)} s`;
@@ -49,7 +49,7 @@ const pace = (study) => {
   return parts.join(" \u00b7 ");
 };
 
-/** The state of a study in words. @param {{ state: string }} study */
+/** Text of the state of a study. @param {{ state: string }} study */
 export const stateWords = ({ state }) => WORDS[state] || state;
 
 /** Actions of a study; `after` is called after each. @param {App} app @param {() => unknown} after */
@@ -68,7 +68,7 @@ export const actsOf = (app, after) => {
   };
 };
 
-/** The studies, a row each.
+/** Table of the studies, one row per study.
  * @param {{ studies: Server.StudyFacts[], onShow: (study: Server.StudyFacts) => unknown, acts: ReturnType<typeof actsOf> }} props */
 export const StudyList = ({ studies, onShow, acts }) => html`
   <div>
@@ -88,7 +88,7 @@ const Study = ({ study, onShow, acts }) => {
     ["Resume", acts.resume, ["cancelled", "interrupted", "failed"].includes(state)],
     ["Delete", acts.remove, !BUSY.includes(state)],
   ];
-  // a button that was pressed may vanish: the one that took its place has the focus then
+  // a pressed button may disappear; then another button of the row receives the focus
   const focused = /** @type {HTMLElement | null} */ (document.activeElement);
   useLayoutEffect(() => {
     if (focused?.hidden && row.current.contains(focused)) row.current.querySelector("button:not([hidden])")?.focus();

@@ -19,7 +19,7 @@ const STEPS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDo
 const CLOSER = { "+": 2, "=": 2, "-": 0.5 };
 const MAP = "Map of {x} and {y}. Arrow keys move between cells, Enter opens the time history in Response, plus and minus zoom, 0 shows the whole map.";
 const START = "Click a cell or use the arrow keys. Drag a frame or press + to zoom in.";
-const SHORTEST = 6; // a pointer that moves less has clicked [CSS pixel]
+const SHORTEST = 6; // a shorter movement of the pointer is a click [CSS pixel]
 /** @type {Lines} */
 const NONE = [];
 
@@ -122,7 +122,7 @@ export const OverturningMap = ({ app, study, result, chosen }) => {
 /** @param {{ canvas: any, painter: any, frame: Signal<any>, keep: (at: Cell) => unknown, preview: (at: Cell) => unknown, aim: Signal<Cell | null>, look: (how: () => unknown) => unknown }} given */
 const usePointer = ({ canvas, painter, frame, keep, preview, aim, look }) => {
   const drag = useRef(null);
-  const framed = useRef(false); // the click that follows keeps no cell
+  const framed = useRef(false); // true if the next click must not keep a cell
   const end = () => {
     drag.current = null;
     frame.value = null;

@@ -1,4 +1,4 @@
-/** Words of the package as a page prints them. */
+/** Texts of the package in the notation of the page. */
 import { pretty } from "/app/format.js";
 import { t } from "/app/words.js";
 

@@ -24,7 +24,7 @@ export const mount = (section, app) => {
   /** @type {string | null} */
   let expected = null;
 
-  // `from`: control that opened it; none if it opened by itself.
+  // `from`: control that opened the result; undefined if it opened automatically.
   /** @param {Server.StudyFacts} study @param {Element | null} [from] */
   const show = async (study, from) => {
     /** @param {object} more */
@@ -84,7 +84,7 @@ const Studies = ({ app, studies, every, open, visits, show, acts, launched }) =>
 const Outcome = ({ app, shown, from, result, refused, chosen }) => {
   const heading = useRef(null);
   const focused = document.activeElement;
-  useLayoutEffect(() => { // focus from the pressed or removed control; typing elsewhere continues
+  useLayoutEffect(() => { // the focus moves here from the pressed or a removed control, not from a field in use
     if (focused && ((result && focused === from) || !focused.isConnected)) heading.current.focus();
   }, [shown, result]);
   const Found = SHOW[shown.kind] ?? Counts;
