@@ -197,7 +197,7 @@ def test_what_is_refused(given, words):
 
 
 def test_there_is_no_law_of_what_was_refused():
-    with pytest.raises(InvalidValueError, match="no law"):
+    with pytest.raises(InvalidValueError, match="no restitution law"):
         identify(ImpactTimes(np.arange(12.0)), BLOCK).law()
 
 

@@ -194,7 +194,7 @@ def test_profiles(shape):
         (lambda: study("amplitude", [0.0], shape="convex", hue=1), "amplitude has the options shape, seed, got hue"),
         (lambda: study("seed", [1]), "the study of seed needs amplitude"),
         (lambda: study("slenderness", [2.0], shape="convex"), "the study of slenderness has no options, got shape"),
-        (lambda: points_convergence((11, 20, 41)), "doubled"),
+        (lambda: points_convergence((11, 20, 41)), "double the number of intervals"),
         (lambda: Laboratory(profile=(0.0,)), "profile must have 41 heights"),
     ],
 )
