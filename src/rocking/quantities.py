@@ -692,8 +692,8 @@ def closely(**digits: str) -> dict[str, Quantity]:
 
 # other keys of answers: sections, sentences, labels, and numbers whose quantity is defined by the answer
 _PARTS = """
-    adjusted advice all all_bodies along_depth amplitude_step analysis answer answers assumptions base base_tolerances
-    basins better_by bodies body by_data_set called_safe cases cells_per_basin claim claims code_methods_outside
+    adjusted advice all all_bodies amplitude_step analysis answer answers assumptions base base_tolerances
+    basins better_by bodies body by_data_set called_safe cases caution cells_per_basin claim claims code_methods_outside
     coefficients columns_not_read comparison comparisons components concerns contributions converged crossing_curves
     crossings curves decides definition designs died directions doubts edges ends envelope errata event evidence
     examples facets file file_unit files finding findings first_corner folder forced from hazard headline

@@ -258,33 +258,6 @@ class Block(Body):
     def with_feet(self, left: float, right: float) -> "Block":
         return self._changed(1.0, 1.0, self.known, (left, right))
 
-    @classmethod
-    def along_depth(cls, body: Body) -> "Block":
-        """Return the block with the motion of a body along its depth; its base has the full depth.
-
-        Parameters
-        ----------
-        body : Block or Section
-            Body with a depth.
-
-        Returns
-        -------
-        Block
-            Block with the mass, the height of the centre of mass and the moment of inertia of the body.
-
-        Examples
-        --------
-        >>> Block.along_depth(Block(width=0.8, height=2.0, depth=0.5)).width
-        0.5
-        """
-        moments, (_, low, _, high), depth = body.local_moments, body.local_box, body.depth
-        across = moments.mass * depth**2 / 12.0
-        known: dict[str, Any] = {"centre": (0.5 * depth, moments.y - low), "moment_of_inertia": across + moments.yy}
-        if isinstance(body, Block) and body.known is None:
-            known = {}
-        left, right = body.local_feet
-        return cls(width=depth, height=high - low, depth=right - left, mass=moments.mass, **known)
-
     def to_section(self) -> "Section":
         """Return the block as a `Section` of one region.
 

@@ -174,10 +174,15 @@ class Body(ABC):
         }  # fmt: skip
         return Message(
             "only motion along the width of {width:.3g} m is computed. The depth of {depth:.3g} m is smaller: along "
-            "the depth uplift begins at {limit:.3g} g, along the width at {own:.3g} g. Exchange width and depth to "
-            "compute the motion along the depth",
+            "the depth uplift begins at {limit:.3g} times gravity, along the width at {own:.3g} times gravity. "
+            "Exchange width and depth to compute the motion along the depth",
             facts,
         )
+
+    @property
+    def caution(self) -> str:
+        """The note of a weaker depth as a sentence for a verdict; empty without one."""
+        return Message("Caution: {note}.", {"note": self.depth_note}) if self.depth_note else ""
 
     @property
     def mass(self) -> float:

@@ -150,9 +150,9 @@ def assessment_document(
     assessment: BodyAssessment, name: str, signed: dict[str, str], governing: GoverningHistory
 ) -> Document:
     """Return the content of the report of an assessment."""
-    fractions = np.concatenate([item.overturning_fraction for item in assessment.directions])
-    may_overturn = (fractions > 0.0).any() or min(item.lowest.factor for item in assessment.directions) < 1.0
-    mark = "bad" if (fractions == 1.0).any() else "fair" if may_overturn else "good"
+    may_overturn = (assessment.overturning_fraction > 0.0).any() or assessment.lowest.factor < 1.0
+    doubtful = may_overturn or assessment.body.is_weaker_along_depth
+    mark = "bad" if (assessment.overturning_fraction == 1.0).any() else "fair" if doubtful else "good"
     margins = Picture(
         "margins", "Smallest overturning factor of each motion, and code methods relative to it (unsafe above 1)"
     )
@@ -194,7 +194,7 @@ def assessment_document(
     )
     verdict = [
         Paragraph(assessment.verdict, "", mark),
-        *map(Paragraph, assessment.sentences[1:3]),
+        *map(Paragraph, (assessment.margin_sentence, assessment.probability_sentence)),
     ]
     title = name or signed["project"] or "A body in an earthquake"
     return Document(title, subtitle, sections, verdict=verdict, footer=SOFTWARE)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
+from rocking.bodies.formats import body_from_toml, body_to_toml
 from rocking.errors import GeometryError, InvalidValueError
 
 pytestmark = pytest.mark.verifies(room="bodies")
@@ -212,15 +213,11 @@ def test_note_of_a_weaker_depth():
         assert body.assumed[-1] == body.depth_note != ""
 
 
-def test_block_along_the_depth():
-    """The body along its depth is that of the extruded solid, rotated by a quarter turn."""
-    section = rk.Section([
-        rk.Region([(0.0, 0.0), (1.0, 0.0), (0.7, 2.5), (0.3, 2.5)], density=2400.0),
-        rk.Region([(0.3, 2.5), (0.7, 2.5), (0.6, 3.0), (0.4, 3.0)], density=900.0),
-    ], depth=0.6)  # fmt: skip
-    side = rk.Block.along_depth(section).side("left")
-    turned = rk.Solid.from_section(section).in_plane(0.5 * math.pi).side("left")
-    along_width = section.side("left")
-    for name in ("half_width", "centre_height", "mass", "moment_of_inertia"):
-        assert getattr(side, name) == pytest.approx(getattr(turned, name), rel=1e-12, abs=0.0)
-    assert side.moment_of_inertia != pytest.approx(along_width.moment_of_inertia, rel=1e-2)
+def test_an_assumed_depth_stays_assumed_in_a_body_file():
+    """A body file contains a depth if it is stated, and only then has the body that is read a note."""
+    stated = rk.Block(width=1.2, height=4.0, depth=1.0)
+    for body, is_weaker in ((rk.Block(width=1.2, height=4.0), False), (stated, True)):
+        for version in (body, body.to_section()):
+            read = body_from_toml(body_to_toml(version))
+            assert version.is_weaker_along_depth is read.is_weaker_along_depth is is_weaker
+            assert read.depth == 1.0

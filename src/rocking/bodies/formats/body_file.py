@@ -23,7 +23,7 @@ from rocking.bodies.restrained import Restrained
 from rocking.bodies.restraints import KINDS
 from rocking.bodies.section import Section
 from rocking.checks import length_unit
-from rocking.conventions import FloatArray
+from rocking.conventions import Assumed, FloatArray
 from rocking.errors import BodyFileError, InvalidValueError, located
 from rocking.messages import Index
 
@@ -265,7 +265,6 @@ def body_to_toml(body: Body | Restrained) -> str:
     [block]
     width = 1.0
     height = 4.0
-    depth = 1.0
     density = 2400.0
     <BLANKLINE>
     """
@@ -274,7 +273,8 @@ def body_to_toml(body: Body | Restrained) -> str:
 
 @body_to_toml.register
 def _(body: Block) -> str:
-    sizes = (f"{key} = {_number(getattr(body, key))}" for key in ("width", "height", "depth", "density"))
+    keys = ("width", "height", *(() if isinstance(body.depth, Assumed) else ("depth",)), "density")
+    sizes = (f"{key} = {_number(getattr(body, key))}" for key in keys)
     feet = [] if body.stands_on_corners else [f"feet = {_row(body.feet)}"]
     return _lines('units = "m"', "", "[block]", *sizes, *feet, *_known_of(body, 0.0, 0.0))
 
@@ -291,7 +291,8 @@ def _(body: MassPoints) -> str:
 def _(body: Section) -> str:
     remarks, x, y = _coordinates(body)
     lines = [*remarks, 'units = "m"', "", "[section]", f"feet = {_row([x[foot] for foot in body.local_feet])}"]
-    lines += [f"depth = {_number(body.depth)}", f"ground = {_number(0.0 if remarks else body.ground)}"]
+    lines += [] if isinstance(body.depth, Assumed) else [f"depth = {_number(body.depth)}"]
+    lines.append(f"ground = {_number(0.0 if remarks else body.ground)}")
     lines += _known_of(body, 0.0 if remarks else body.origin_x, 0.0 if remarks else body.ground)
     for region in body.regions:
         outline, *holes = ([(x[a], y[b]) for a, b in ring.tolist()] for ring in region.rings)

@@ -8,7 +8,7 @@ from typing import Any, cast
 import numpy as np
 
 from rocking import checks, conventions
-from rocking.bodies import Block, Body, Solid
+from rocking.bodies import Body, Solid
 from rocking.bodies.equilibria import StablePose
 from rocking.conventions import FEET, FloatArray, IntArray
 from rocking.decision.assessment.answer import BodyAssessment, ModelMargin, StandingSolid, just_above
@@ -342,7 +342,7 @@ def assess(  # noqa: PLR0913 - inputs, assumptions and settings
         body, motion_set, restitution=known.pop("predicted", None), friction=friction, gravity=gravity, threads=threads,
         progress=progress, **known,
     )  # fmt: skip
-    return _with_depth(BodyAssessment(
+    return BodyAssessment(
         body=flat, motions=tuple(moving), records=records, models=margins, refused=refused,
         friction=coefficient, sliding=sliding, uplift_factors=uplift_factors,
         capacities={name: item.capacity(sides, shaking)[unique_index, 0] for name, item in CODE_METHODS.items()},
@@ -354,26 +354,7 @@ def assess(  # noqa: PLR0913 - inputs, assumptions and settings
         gravity=gravity, standing=standing,
         outside={name: item.outside(sides, shaking) for name, item in CODE_METHODS.items()},
         vertical=int(shaking.vertical.sum()),
-    ), motion_set, known.get("azimuth"), restitution, options)  # fmt: skip
-
-
-def _with_depth(
-    assessment: BodyAssessment, motions: Any, azimuth: Any, restitution: Any, options: dict[str, Any]
-) -> BodyAssessment:
-    """Return an assessment with the margins along a stated depth if that is the weaker side."""
-    if not assessment.body.is_weaker_along_depth:
-        return assessment
-    body = Block.along_depth(assessment.body)
-    if isinstance(azimuth, (int, float)):
-        azimuth = float(azimuth) + 0.25 * TURN
-    moving, records = in_the_plane(motions, azimuth)
-    uplift_factors = np.array([lifting_factor(body, item, assessment.gravity) for item in moving])
-    margins, _, refused = _margins(body, MotionList(moving), choices(body, restitution), options, None, uplift_factors)
-    other = replace(
-        assessment, body=body, motions=tuple(moving), records=records, models=margins, refused=refused,
-        uplift_factors=uplift_factors,
     )  # fmt: skip
-    return replace(assessment, along_depth=other)
 
 
 def in_the_plane(motions: Any, azimuth: Any = None) -> tuple[list[GroundMotion], IntArray]:

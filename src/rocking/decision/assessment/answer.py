@@ -277,8 +277,6 @@ class BodyAssessment:
         Reason why a code method does not apply to the body or motions, by method.
     vertical : int
         Number of motions with a vertical component.
-    along_depth : BodyAssessment, optional
-        Margins of the block along a stated depth where uplift begins earlier than along the width.
     """
 
     body: Body
@@ -296,7 +294,6 @@ class BodyAssessment:
     standing: StandingSolid | None = None
     outside: Mapping[str, str] = field(default_factory=dict)
     vertical: int = 0
-    along_depth: "BodyAssessment | None" = None
 
     def exclusion(self, method: str) -> str:
         """Return the reason why a code method does not apply.
@@ -364,27 +361,9 @@ class BodyAssessment:
 
     @property
     def verdict(self) -> str:
-        """Outcome as sentences, also along a depth that is the weaker side."""
-        if (other := self.along_depth) is None:
-            return self._outcome
-        left, right = other.body.feet
-        limit = other.body.uplift_acceleration / g
-        sides = {"width": other.body.depth, "depth": right - left, "limit": limit}
-        return Message.joined([
-            self._outcome,
-            Message(
-                "This result applies to motion along the width of {width:.3g} m. The depth of {depth:.3g} m is the "
-                "weaker side, with uplift at {limit:.3g} g. Along the depth:",
-                sides,
-            ),
-            other._outcome,
-            other.margin_sentence,
-        ])  # fmt: skip
-
-    @property
-    def directions(self) -> "tuple[BodyAssessment, ...]":
-        """The assessment, and that along a depth that is the weaker side."""
-        return (self,) if self.along_depth is None else (self, self.along_depth)
+        """Outcome as a sentence, with a caution if a stated depth is the weaker side."""
+        caution = self.body.caution
+        return Message.joined([self._outcome, caution]) if caution else self._outcome
 
     @property
     def _outcome(self) -> str:
@@ -564,10 +543,7 @@ class BodyAssessment:
     @property
     def sentences(self) -> tuple[str, ...]:
         """Outcome, margin, probability, causes and measures."""
-        margin = self.margin_sentence
-        if self.along_depth is not None:
-            margin = Message.joined([Message("Along the width:"), margin])
-        return (self.verdict, margin, self.probability_sentence, *self.governing_factors, *self.measures)
+        return (self.verdict, self.margin_sentence, self.probability_sentence, *self.governing_factors, *self.measures)
 
     @property
     def motion_count(self) -> str:
@@ -604,7 +580,10 @@ class BodyAssessment:
             "motions": [item.name for item in self.motions],
             "repairs": list(self.prediction.repairs),
             "record_index": self.records,
-            "lowest": self._lowest_answer,
+            "lowest": {
+                "min_factor": self.lowest.factor, "model": self.lowest.model, "mirrored": self.lowest.mirrored,
+                "motion": self.motions[self.lowest.motion].name,
+            },
             "uplift_factors": self.uplift_factors,
             "models": {name: item.answer() for name, item in self.models.items()},
             "refused": dict(self.refused),
@@ -615,30 +594,5 @@ class BodyAssessment:
             "remedies": self.remedies.answer(),
             "prediction": self.prediction.answer(),
             **({} if self.standing is None else {"solid": self.standing.answer()}),
-            **({} if self.along_depth is None else {"along_depth": self.along_depth.margins_answer()}),
+            **({"caution": self.body.caution} if self.body.caution else {}),
         })  # fmt: skip
-
-    def margins_answer(self) -> Answer:
-        """Return outcome, uplift and margins without probability, code methods and measures.
-
-        Returns
-        -------
-        Answer
-            SI units; infinite without overturning, NaN without a value.
-        """
-        return Answer({
-            "body": repr(self.body),
-            "verdict": self._outcome,
-            "uplift_acceleration": min(self.body.side(foot, self.gravity).uplift_acceleration for foot in FEET),
-            "uplift_factors": self.uplift_factors,
-            "lowest": self._lowest_answer,
-            "models": {name: item.answer() for name, item in self.models.items()},
-        })  # fmt: skip
-
-    @property
-    def _lowest_answer(self) -> dict[str, Any]:
-        lowest = self.lowest
-        return {
-            "min_factor": lowest.factor, "model": lowest.model, "mirrored": lowest.mirrored,
-            "motion": self.motions[lowest.motion].name,
-        }  # fmt: skip

@@ -221,8 +221,7 @@ class Prediction(Exported):
     def sentences(self) -> tuple[str, ...]:
         """Verdict, other probabilities, effects of inputs, and predictability."""
         chance = self.chances["overturning"]
-        note = getattr(self.body, "depth_note", "")
-        sentences = [self.verdict, *([Message("Caution: {note}.", {"note": note})] if note else [])]
+        sentences = [self.verdict, *filter(None, [getattr(self.body, "caution", "")])]
         if not math.isnan(chance.wide_low):
             interval = _between(chance.wide_low, chance.wide_high)
             sentences.append(

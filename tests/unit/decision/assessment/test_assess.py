@@ -231,28 +231,16 @@ def test_cases_count_models_coefficients_and_interval_ends():
     assert _cases(["ked"]).facts["parts"] == "1 model"
 
 
-def test_a_depth_that_is_the_weaker_side_has_its_own_margins():
-    """The margins along the depth are those of the body with width and depth exchanged, and change the verdict."""
+def test_a_depth_that_is_the_weaker_side_is_a_caution():
+    """The verdict of the width has a caution with both limits of uplift; exchanged dimensions have none."""
     pulse = rk.pulses.sine(3.6, 0.8)
     assessment = rk.assess(rk.Block(width=0.8, height=2.0, depth=0.5), pulse, ["ked", 0.9], count=8)
     exchanged = rk.assess(rk.Block(width=0.5, height=2.0, depth=0.8), pulse, ["ked", 0.9], count=8)
-    assert exchanged.along_depth is None
-    other = assessment.along_depth
-    assert other.lowest.factor == pytest.approx(exchanged.lowest.factor, rel=1e-9)
-    assert assessment.lowest.factor > 1.0 > other.lowest.factor
+    assert assessment.lowest.factor > 1.0 > exchanged.lowest.factor
+    facts = assessment.body.depth_note.facts
+    assert (facts["limit"], facts["own"]) == pytest.approx((0.25, 0.4), rel=1e-12)
     answer = assessment.answer()
-    assert answer["along_depth"]["uplift_acceleration"] == pytest.approx(g * 0.25, rel=1e-12)
-    assert answer["along_depth"]["lowest"]["min_factor"] == other.lowest.factor
-    assert str(exchanged.verdict) in answer["verdict"]
-    assert str(exchanged.margin_sentence) in answer["verdict"]
-    assert "along_depth" not in exchanged.answer().values
-
-
-def test_the_depth_has_the_other_component_of_a_stated_azimuth():
-    """With an azimuth of zero the motion along the depth is the component y alone."""
-    still, shaken = record(1e-3), record(9.0)
-    block = rk.Block(width=0.8, height=2.0, depth=0.5)
-    for along, across, overturned in ((still, shaken, 1.0), (shaken, still, 0.0)):
-        motion = {"x": along, "y": across}
-        other = rk.assess(block, motion, ["ked"], azimuth=0.0, count=8).along_depth
-        assert other.models["ked"].overturned.tolist() == [overturned]
+    assert answer["verdict"].endswith(answer["caution"])
+    assert assessment.prediction.sentences[1] == answer["caution"]
+    assert "caution" not in exchanged.answer().values
+    assert exchanged.body.caution == ""

@@ -162,7 +162,7 @@ const Verdict = ({ answer, question }) => {
   ]);
   const isOverturned = Object.values(answer.models).some(fallen);
   return html`
-    <p class=${`verdict ${isOverturned ? MARKS.overturning : "good"}`} data-testid="verdict">${answer.sentences[0]}</p>
+    <p class=${`verdict ${isOverturned ? MARKS.overturning : answer.caution ? "fair" : "good"}`} data-testid="verdict">${answer.sentences[0]}</p>
     ${answer.sentences.slice(1).map((/** @type {string} */ line) => html`<p key=${line}>${line}</p>`)}
     <${Drawing} question=${question} alt="Smallest overturning scale factor of each motion, by model" />
     <h3>By restitution model</h3>
