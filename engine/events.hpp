@@ -108,7 +108,8 @@ double Kernel<G, U, N, D, Z, L>::first_contact(double* c) const {
     return 2.0;
 }
 
-// An impact at a position within the step. settle() decides about further events. after: [rad per stretch]
+// An impact at a position within the step. settle() decides whether further events follow. after: angular
+// velocity after the impact [rad per stretch]; a stretch is the interval between two samples.
 ROCKING_KERNEL
 bool Kernel<G, U, N, D, Z, L>::bounce(int i, double at, double speed) {
     Lane& lane = lanes[i];

@@ -409,8 +409,8 @@ inline bool turned_whole(const Problem& p, const Points& free, double still, Sol
 }
 
 // Solves the contact and iterates the directions in which free vertices start to slide. s.directions: directions of the
-// sliding vertices. still: at lower rates friction alone sets the direction. pulls: opposite to the first directions of
-// the free vertices.
+// sliding vertices. still: limit of the slip rate; below this limit friction alone determines the direction. pulls:
+// vectors opposite to the first directions of the free vertices.
 inline bool sliding(const Problem& p, double still, const Vecs& pulls, Solution& s) {
     const Points& members = s.contact.members;
     Points free;

@@ -9,7 +9,7 @@ namespace ROCKING_ISA {
 constexpr double kPull = 1e-9, kPatience = 300.0;
 constexpr int kStuck = 100, kPiled = 60, kUpkeep = 16, kHalvings = 60;
 
-// Largest angles 1.5 rate h at which the series of an order reach the tolerance: x^(n + 1) / (n + 1)! = tolerance.
+// reach: largest angles 1.5 * rate * h for which the series of each order meets the tolerance: x^(n + 1) / (n + 1)! = tolerance.
 struct Orders {
     static constexpr int count = 5;
     static constexpr int order[count] = {4, 6, 8, 12, 16};

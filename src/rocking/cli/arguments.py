@@ -97,7 +97,7 @@ def parsed_sets(texts: Sequence[str] | None, allowed: Iterable[str]) -> Tables:
 
 def with_sets(tables: Mapping[str, Any], sets: Mapping[str, Tables], *, lists: bool = False) -> Tables:
     """Return the tables of a file with the keys of ``--set``; with `lists`, a list of one table counts as a table."""
-    tables = {"schema": SCHEMA, **migrated(dict(tables))}  # options use the present keys
+    tables = {"schema": SCHEMA, **migrated(dict(tables))}  # the options use the keys of the current schema
     changed = dict(tables)
     for table, keys in sets.items():
         name = "motions" if lists and table == "motion" else table

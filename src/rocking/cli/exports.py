@@ -89,8 +89,8 @@ def _file(text: str, kinds: dict[str, Export]) -> tuple[str, Path]:
     kind_name = next((kind for kind, export in kinds.items() if path.suffix.lower() in export.endings), None)
     if kind_name is None:
         raise UsageError(
-            "{parameter} {file!r:.60}: unknown extension; files: {contents}", parameter="--output", file=path.name,
-            contents=_possible(kinds),
+            "{parameter} {file!r:.60}: unknown extension. Allowed files: {contents}", parameter="--output",
+            file=path.name, contents=_possible(kinds),
         )  # fmt: skip
     return kind_name, path
 

@@ -91,7 +91,7 @@ class RockingParameters:
         return self.right if sign > 0.0 else self.left
 
     def largest(self, sign: float) -> float:
-        """Return the largest coefficient of an impact on a side.
+        """Return the largest coefficient of restitution that the impact law gives on a side.
 
         Parameters
         ----------

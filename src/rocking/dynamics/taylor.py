@@ -95,7 +95,7 @@ def _slopes(polynomial: Sequence[float]) -> list[float]:
 
 
 def _zeros(polynomial: Sequence[float]) -> list[float]:
-    """Return the changes of sign on [0, 1 + 1e-9]. At most one is between two zeros of the slope (Rolle)."""
+    """Return the changes of sign on [0, 1 + 1e-9]. At most one zero is between two adjacent zeros of the slope."""
     start, tail = polynomial[0], polynomial[1:]
     if start == 0.0 and tail:  # a zero at 0 itself is not a change of sign
         return _zeros(tail)

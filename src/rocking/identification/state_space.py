@@ -214,7 +214,7 @@ class Model:
 def _damped(
     y: FloatArray, dy: FloatArray, ratio: FloatArray, unit: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Return y at the middle of a half cycle with the slopes of ln y, and the loss with its slopes."""
+    """Return y at the middle of a half cycle, the slopes of ln y, the viscous loss, and the slopes of the loss."""
     loss, slope = viscous_loss(y)
     dy = (1.0 - 0.5 * ratio * slope)[:, None] * dy - 0.5 * loss[:, None] * unit
     y = y * np.exp(-0.5 * ratio * loss)

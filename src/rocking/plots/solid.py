@@ -196,7 +196,7 @@ def _base(axes: "Axes", solid: Solid, frame: FloatArray) -> None:
 def _cubes(solid: Solid, energies: UnitEnergies, side: float) -> tuple[FloatArray, FloatArray]:
     cube = box(side, side, side).corners - np.array([0.0, 0.0, 0.5 * side])
     triangles = (energies.units.centre[:, None, None] + cube).reshape(-1, 3, 3)
-    # a unit at the surface is a fraction of a cube; the loss is relative to the volume of the unit
+    # a volume unit at the surface is smaller than its cube; the energy loss is divided by the volume of the unit
     density = np.array([solid_part.density for solid_part in solid.local_parts])[energies.units.part]
     return triangles, np.repeat(energies.density * density, len(cube))
 

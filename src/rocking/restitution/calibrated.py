@@ -38,7 +38,7 @@ class Calibrated(InertiaModel):
     """Expected coefficient of a body, from the posterior of the published measurements.
 
     The coefficient is the mean over a factor eta and an impulse position k. For the uncertainty of the coefficient and
-    the scatter of single bodies, see `rocking.evidence.restitution_distribution`.
+    the scatter between bodies, see `rocking.evidence.restitution_distribution`.
 
     Examples
     --------

@@ -141,7 +141,7 @@ class _Bed:
         section = bisect_right(self.edges, edge)
         if section == 0 or self.edges[section - 1] != edge:
             return section
-        # at the end of a stretch, the first force determines the direction
+        # the edge is the end of a stretch: the first force determines which of the two adjacent sections follows
         length, first, second = self.moments_beyond(section - 1)
         falls = self.push * (first - edge * length) >= edge * self.turn * (second - edge * first)
         return section if falls else section - 1

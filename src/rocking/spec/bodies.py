@@ -111,7 +111,7 @@ def _from_angle(table: dict[str, Any]) -> Body:
 
 
 def _note_outlines(tables: dict[str, Any], folder: str, inputs: InputFiles) -> None:
-    """Note the outline files of a body. Errors are ignored here, because the reader reports them later."""
+    """Add the outline files of a body to the input files. Errors are ignored, because the reader reports them later."""
     try:
         regions = tables.get("section", {}).get("region", [])
         names = [region[key] for region in regions for key in ("geojson", "dxf") if key in region]

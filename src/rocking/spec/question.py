@@ -137,7 +137,7 @@ class StudyQuestion(JobTable):
         return {}
 
     def answer(self, problem: "StudyProblem", progress: Progress = None, threads: int | None = None) -> Any:
-        """Compute the study in memory. Return the result of its function in `rocking.studies`, or a comparison."""
+        """Compute the study in memory. Return the result, or the comparison of several restitutions."""
         return self.study(problem).computed(progress, threads)
 
     def study(self, problem: "StudyProblem") -> "Study":

@@ -114,7 +114,9 @@ def _maximum(exact: FloatArray, bounds: FloatArray) -> tuple[float, float]:
     if float(np.abs(gradient).max()) < 1e-6 * (exact.size + bounds.size):
         return float(at[0]), float(at[1])
     raise InvalidValueError(
-        "no lognormal distribution fits {count} crossings and {bounds} bounds", count=exact.size, bounds=bounds.size
+        "no lognormal distribution fits {count} known and {bounds} censored capacities",
+        count=exact.size,
+        bounds=bounds.size,
     )
 
 

@@ -54,7 +54,7 @@ class Goodness:
     trials: FloatArray  # trials, observed, expected: trials, failures, and failures by the curve, per group [-]
     observed: FloatArray
     expected: FloatArray
-    # 95 % band of the fraction of failures per group, by the curve [-]
+    # 95 % band that the curve predicts for the fraction of failures per group [-]
     band: tuple[FloatArray, FloatArray]
     distance_limit: float  # 95 % quantile of the largest distance in simulated data sets [-]
     repetitions: int  # number of refitted data sets

@@ -117,7 +117,7 @@ class Transitions:
         return tuple(pair for pair, fall in zip(pairs, falls, strict=True) if fall == overturned)
 
 
-# range of the search over the acceleration of uplift; the start is lower with a vertical component
+# limits of the search / uplift acceleration; the lower limit is smaller with a vertical component
 _FROM, _FROM_VERTICAL, _TO = 1.0, 0.1, 50.0
 _MOST_SAMPLES = 1_000_000
 

@@ -105,7 +105,7 @@ class Thresholds:
         checks.within("high_consequence", self.high_consequence, 0.0, 1.0, open_low=True)
 
     def factor(self, consequence: str) -> float:
-        """Return the factor of the fractions for a consequence; its inverse is the weight of a fall.
+        """Return the factor on the limits of the overturning fraction. The inverse factor is the weight of a fall.
 
         Parameters
         ----------

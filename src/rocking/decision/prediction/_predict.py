@@ -71,7 +71,7 @@ def predict(  # noqa: PLR0913 - each uncertain input is an argument
     motions : GroundMotion, Pulse, or mapping with x, y and z, or a sequence of them
         Ground motions, equally likely. With a y component, the azimuth of the body is sampled.
     restitution : str, RestitutionModel or input, optional
-        "measured" (default), the distribution of the published measurements with the scatter of single bodies; a
+        "measured" (default), the distribution of the published measurements with the scatter between bodies; a
         model or its name; a coefficient for both feet; ``{"left": .., "right": ..}``; or "complementarity", only the
         contact laws at the corners. Solids: "measured", "housner-3d", "ked-3d" or a coefficient [-].
     friction : input, optional

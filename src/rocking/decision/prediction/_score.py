@@ -202,9 +202,9 @@ def score(  # noqa: PLR0913 - outcomes, motions and settings
 ) -> Validation:
     """Score probabilities against outcomes, compared with simple reference curves.
 
-    The reference forecasts are a logistic regression on ln PGA and ln PGV, and the overall fraction of the event. Both
-    are fitted to the outcomes under all other motions. Scores are the Brier and the logarithmic score. The bootstrap of
-    the intervals resamples motions, and differences in pairs.
+    The reference forecasts are a logistic regression on ln PGA and ln PGV, and the fraction of outcomes with the event.
+    Both are fitted to the outcomes under all other motions. Scores are the Brier and the logarithmic score. The
+    bootstrap of the intervals resamples motions, and differences in pairs.
 
     Parameters
     ----------

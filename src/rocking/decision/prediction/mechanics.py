@@ -168,7 +168,7 @@ def as_measured(text: str, *, extrapolated: bool) -> str:
     return outside if extrapolated else text
 
 
-MEASURED_REASON = Message("the published measurements, with the scatter of single bodies")
+MEASURED_REASON = Message("the published measurements, with the scatter between bodies")
 
 Usual = tuple[Any, float, float, str]
 """Default of an input, its smallest and largest allowed value, and its unit."""

@@ -210,7 +210,8 @@ def regularity(times: FloatArray, orders: IntArray) -> Regularity:
 def next_impact(times: FloatArray, orders: IntArray, order: int) -> tuple[float, float]:
     """Return the expected time of an impact after other impacts, and the interval before this impact, at a moderate p.
 
-    y decreases by the median of the last decreases of both sides. The result is NaN for too few intervals.
+    ln y changes over two half cycles by the median of the last changes of both sides. The result is NaN for too few
+    intervals.
     """
     adjacent = np.flatnonzero(np.diff(orders) == 1)
     intervals = np.diff(times)[adjacent]

@@ -33,7 +33,7 @@ class SoundConstants:
     rival_margin: float = (
         0.25  # smallest log likelihood ratio to a rival [-]; clicks with nearly equal rivals are excluded
     )
-    fewest_values: float = 25.0  # N in Eq. 317, and its smallest value for a single click [-]; development
+    fewest_values: float = 25.0  # N in Eq. 317; smallest N of a single click [-]; reason: development
     most_values: float = 60.0  # largest N of a single click in Eq. 317 [-]; limits the weight of a good match
     law_tail: float = 10.0  # degrees of freedom of the law in Eq. 317 [-]; heavy tail against single wrong times
     law_tolerance: float = 3e-3  # tolerance of the time between feet in Eq. 317 [s]; `onsets` finds this time later

@@ -125,8 +125,8 @@ def impact_in_space(
     down = float(np.cross(before, middle_of_base(solid) - pivot)[2])
     if not down < 1e-12 * speed * solid.size:
         raise InvalidValueError(
-            "{parameter} must rotate the base to the ground about the pivot, got a middle that rises at {speed:.3g} "
-            "m/s; check the sign: the vector is along the axis, right-handed",
+            "{parameter} must rotate the base towards the ground about the pivot, but the centre of the base rises at "
+            "{speed:.3g} m/s; check the sign: the vector is along the axis, right-handed",
             parameter="velocity", speed=down,
         )  # fmt: skip
     impact = SpatialImpact(

@@ -353,10 +353,10 @@ def _keeping_uplift(model: FragilityModel, excess: "Excess") -> FragilityModel:
 
 
 def uplift_words(model: FragilityModel) -> str:
-    """Return a sentence with the level below which no motion lifts the body."""
+    """Return a sentence with the level below which no motion causes uplift."""
     unit, size = _shown(model.im, model.unit)
     level = f"{(model.uplift_threshold or 0.0) * size:.4g} {unit}".rstrip()
-    return Message("no motion lifts the body below {level}", {"level": level})
+    return Message("no motion causes uplift below {level}", {"level": level})
 
 
 _COMMON = (

@@ -88,7 +88,7 @@ class Subject:
 
     @cached_property
     def lowest_uplift(self) -> float | None:
-        """Level below which no motion lifts the body (its weaker side); None if there is no such level.
+        """Level below which no motion causes uplift of the body (its weaker side); None if there is no such level.
 
         This level exists for PGA, absolute or normalised, under horizontal motions, for a body that does not slide
         before uplift.

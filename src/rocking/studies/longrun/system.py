@@ -214,7 +214,7 @@ class HarmonicRocking:
         return system
 
     def value(self, parameter: Parameter) -> float:
-        """Return the value of a parameter, as for `changed`.
+        """Return the value of a parameter, in the unit that `changed` accepts.
 
         Parameters
         ----------
@@ -289,7 +289,9 @@ class Periods:
     peak: FloatArray  # largest rotation over alpha
     growth: FloatArray  # sums of the logarithms of the growth of the tangent vectors, shape (rows, 2)
     states: FloatArray  # rotation [rad] and angular velocity [rad/s], shape (rows, periods, 2); NaN after the end
-    hits: FloatArray  # time [s], angular velocity after and speed before of the first impacts, shape (rows, most, 3)
+    # of the first impacts: time [s], angular velocity after the impact, speed before the impact [rad/s], shape
+    # (rows, most_impacts, 3)
+    hits: FloatArray
 
 
 def engine() -> Any:

@@ -54,7 +54,7 @@ def test_the_default_does_not_move_uplift(leaning):
     names = ["rotation > 0.5 alpha", "overturned"]
     if "rocking" in curves:
         assert (curves["rocking"].median, curves["rocking"].dispersion) == alone["rocking"]
-        assert "is not changed: no motion lifts the body below 0.311 g" in made.adjusted
+        assert "is not changed: no motion causes uplift below 0.311 g" in made.adjusted
     else:
         assert "left out" in made.without["rocking"]
     assert "The states rotation > 0.5 alpha, overturned have a common dispersion" in made.adjusted
@@ -74,7 +74,7 @@ def test_the_default_does_not_move_uplift(leaning):
         assert curves[name].dispersion != pytest.approx(alone[name][1], rel=0.05)
     moved = shown_curves(leaning, "common-dispersion")
     assert moved.curves[0].probability(0.2 * G) > 0.01  # rocking, at a level where nothing can lift the body
-    assert "at the level of uplift: no motion lifts the body below 0.311 g" in moved.adjusted
+    assert "at the level of uplift: no motion causes uplift below 0.311 g" in moved.adjusted
     assert all(curve.probability(0.2 * G) < 0.01 for curve in made.curves if curve.state == "rocking")
 
 
@@ -88,7 +88,7 @@ def test_every_file_contains_the_curves_that_are_shown(leaning, tmp_path):
     assert [row[4] * G for row in rows] == pytest.approx([c.median for c in shown.curves], rel=1e-14)
     for row in rows:
         assert made.adjusted.rstrip(".") in row[9]
-        assert "no motion lifts the body below 0.311 g" in row[9]
+        assert "no motion causes uplift below 0.311 g" in row[9]
         assert ".;" not in row[9]
     assert made.adjusted in to_nrml(made, tmp_path / "f.xml").read_text("utf-8").replace("&gt;", ">")
     figure = fragility_picture(leaning, curves=shown)

@@ -14,7 +14,7 @@ const NARROWEST = 80; // width in pixels below which the canvas is not visible y
 const CELL = 12; // smallest width of a grid cell in pixels
 const REACH = 16; // pixels from a vertex within which it is picked
 const ZOOM = 1.25;
-const [NEAREST, FARTHEST] = [1e6, 0.05]; // limits of the scale / scale at which the body fills the board
+const [NEAREST, FARTHEST] = [1e6, 0.05]; // largest and smallest scale / scale at which the body fills the drawing board
 
 const ABOUT = "Drawing board. Tab reaches the vertices; arrow keys move one, Delete removes it, Insert adds one after it. "
   + "Page Up and Page Down zoom, Control with arrow keys pans, Home shows the whole body.";
