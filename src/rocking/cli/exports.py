@@ -172,7 +172,7 @@ def _cells(dataset: Any) -> "Table":
     # names of restitutions have no unit
     units = {name: dataset[name].attrs.get("units", "") for name in names}
     columns = {str(name): Column(row, units[name], codes=codes[str(name)]) for name, row in rows.items()}
-    return Table("row", columns, no_unit="1")
+    return Table("row", columns, provenance=dataset.attrs, no_unit="1")
 
 
 def _write_dataset(answer: Any, path: Path) -> None:

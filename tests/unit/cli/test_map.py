@@ -135,6 +135,29 @@ def test_files(printed, tmp_path):
         assert kept.sizes["point"] == found.sizes["point"]
 
 
+@pytest.mark.parametrize("models", [("ked", "housner"), ("ked",)])
+def test_workbook_and_matlab_file(models, printed, tmp_path):
+    """Both files contain the cells of all models, without the points of a refined map, and the provenance."""
+    openpyxl, matlab = pytest.importorskip("openpyxl"), pytest.importorskip("scipy.io")
+    refine, files = 2 * (len(models) == 1), [tmp_path / "a.xlsx", tmp_path / "a.mat"]
+    options = [word for name in models for word in ("--restitution", name)] + ["--refine", refine] * bool(refine)
+    outputs = [word for path in files for word in ("--output", path)]
+    printed(*SIZE, PULSE, "--x", "frequency_ratio=1:7:4", "--y", "amplitude_ratio=1:10:5", *options, *outputs)
+    ratios = (("frequency_ratio", np.linspace(1, 7, 4)), ("amplitude_ratio", np.linspace(1, 10, 5)))
+    maps = [overturning_map(BLOCK, SINE, *ratios, refine=refine, restitution=name) for name in models]
+    peaks = [value for dataset in maps for value in dataset["peak_rotation"].values.ravel().tolist()]
+    book = openpyxl.load_workbook(files[0])
+    heading, *cells = book["cells"].iter_rows(values_only=True)
+    assert [row[heading.index("peak_rotation [rad]")] for row in cells] == pytest.approx(peaks, rel=1e-15)
+    structure = matlab.loadmat(files[1], simplify_cells=True)["rocking"]
+    assert structure["peak_rotation"].tolist() == peaks
+    if len(models) == 2:
+        labels = [name for name in models for _ in range(20)]
+        assert [row[heading.index("restitution")] for row in cells] == structure["restitution"].tolist() == labels
+    assert json.loads(structure["provenance"])["setting_gravity"] == G
+    assert float(dict(book["provenance"].iter_rows(values_only=True))["setting_gravity"]) == G
+
+
 @pytest.mark.parametrize(
     ("word", "values"),
     [

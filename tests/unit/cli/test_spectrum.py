@@ -1,6 +1,7 @@
 """`rocking spectrum`: numbers equal the study, slenderness and periods in words, refusals."""
 
 import csv
+import json
 import math
 
 import numpy as np
@@ -56,7 +57,11 @@ def test_page_and_files(printed, tmp_path):
     heading, *cells = openpyxl.load_workbook(files[3])["cells"].iter_rows(values_only=True)
     column = heading.index("peak_rotation [rad]")
     assert [row[column] for row in cells] == pytest.approx(peaks, rel=1e-15)
-    assert io.loadmat(files[4], simplify_cells=True)["rocking"]["peak_rotation"].tolist() == peaks
+    structure = io.loadmat(files[4], simplify_cells=True)["rocking"]
+    assert structure["peak_rotation"].tolist() == peaks
+    provenance = json.loads(structure["provenance"])
+    assert provenance["motion_sha256"] == found.attrs["motion_sha256"]
+    assert (provenance["restitution"], provenance["setting_gravity"]) == ("calibrated", G)
 
 
 @pytest.mark.parametrize(
