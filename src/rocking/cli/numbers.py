@@ -10,7 +10,7 @@ from rocking.bodies import Block
 from rocking.cli.page import Page
 from rocking.cli.spelling import UsageError
 from rocking.conventions import UNITS, FloatArray
-from rocking.spec.fields import Values, kinds_of, meaning_and_unit
+from rocking.spec.fields import Angle, Values, kinds_of, meaning_and_unit
 
 if TYPE_CHECKING:
     from pydantic.fields import FieldInfo
@@ -70,9 +70,8 @@ def value_of(field: "FieldInfo", option: str, value: Any) -> Any:
     if not isinstance(value, str):
         return value
     kinds, (_, unit) = kinds_of(field), meaning_and_unit(field.description or "")
-    if kinds == [float, str]:  # a fraction, or an angle with its unit
-        number, angle_unit = checks.quantity(option, value, "rad")
-        return value if angle_unit else number
+    if Angle in kinds:
+        return Angle.of(option, value)
     kind = kinds[0]
     if kind is float:
         return checks.quantity(option, value, unit)[0]

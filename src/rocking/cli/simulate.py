@@ -20,12 +20,14 @@ from rocking.cli.spelling import UsageError
 from rocking.conventions import COMPARED_RESTITUTIONS, DEFAULT_RESTITUTION
 from rocking.dynamics.mechanics import restitution_label
 from rocking.errors import RockingError, located
+from rocking.messages import Message
 from rocking.motions.components import leading
 from rocking.motions.summary import MotionSummary, peak_names, support_of
 from rocking.outcome import Outcome
 from rocking.spec.bodies import any_body_of
 from rocking.spec.construction import motions_of
 from rocking.spec.documents.response import ResponseDocument, ResponseTable, ResponseTables
+from rocking.spec.fields import Angle
 from rocking.spec.motion_tables import MotionKeys, MotionTable
 from rocking.spec.reading import CommandFiles, InputFiles, checked, tables_in
 from rocking.spec.response import problem_of, response_problem
@@ -120,13 +122,12 @@ def simulate(
                 )  # fmt: skip
             deliver(_several(arguments, motions, display, quiet=as_json), as_json=as_json)
             return
-        problem = _problem(arguments, in_space)
+        with arguments.hinted():
+            document = _document(arguments)
+            problem = response_problem(document, CommandFiles(Path()), in_space=in_space)
     if problem.initial_rotation is not None:
-        _check_share(
-            problem.balance_angle,
-            problem.initial_rotation,
-            "response.initial_rotation" if file else "--initial-rotation",
-        )
+        has_unit = isinstance(document.response.initial_rotation, Angle)
+        _check_rotation(problem, "response.initial_rotation" if file else "--initial-rotation", has_unit=has_unit)
     if in_space and problem.mechanics.name != "hull":
         raise UsageError(".glb is for 3D bodies with friction; use .html or .gif")
     with bar("history", quiet=as_json):
@@ -137,7 +138,8 @@ def simulate(
 _TILTS = ("peak_rotation", "peak_tilt")
 
 
-def _problem(arguments: Arguments, in_space: bool) -> "ResponseProblem":
+def _document(arguments: Arguments) -> ResponseDocument:
+    """Return the input file with the same content as the options."""
     body, motions = arguments.body_and_motions()
     response = arguments.table("response", arguments.values(ResponseTable))
     free = "initial_rotation" in response
@@ -153,18 +155,17 @@ def _problem(arguments: Arguments, in_space: bool) -> "ResponseProblem":
         )
     if not free and not dropped and not motions and not arguments.solid:
         raise UsageError("No ground motion. Add --motion or --initial-rotation")
-    with arguments.hinted():
-        tables: dict[str, Any] = {
-            "body": arguments.body_table(body),
-            "response": response,
-            **_restitution(arguments),
-            "settings": arguments.sets.get("settings", {}),
-        }
-        if motions or not (free or dropped):
-            motion = arguments.of_body(motions)
-            scale = arguments.options["scale"] if arguments.spelt("scale") else None
-            tables["motion"] = {**motion, **arguments.table("motion", {"scale": scale}, keys={"scale"})}
-        return response_problem(checked(ResponseDocument, tables), CommandFiles(Path()), in_space=in_space)
+    tables: dict[str, Any] = {
+        "body": arguments.body_table(body),
+        "response": response,
+        **_restitution(arguments),
+        "settings": arguments.sets.get("settings", {}),
+    }
+    if motions or not (free or dropped):
+        motion = arguments.of_body(motions)
+        scale = arguments.options["scale"] if arguments.spelt("scale") else None
+        tables["motion"] = {**motion, **arguments.table("motion", {"scale": scale}, keys={"scale"})}
+    return checked(ResponseDocument, tables)
 
 
 def _restitution(arguments: Arguments) -> dict[str, Any]:
@@ -277,17 +278,19 @@ def _peak(response: Any) -> dict[str, float]:
     return {name: abs(float(getattr(response, name)))}
 
 
-def _check_share(alpha: float, initial_rotation: float, option: str) -> None:
-    """Refuse an initial rotation above 90 degrees; warn above 1, which can be an angle in degrees; alpha [rad]."""
-    if abs(initial_rotation) * alpha >= 0.5 * math.pi:
+def _check_rotation(problem: "ResponseProblem", option: str, *, has_unit: bool) -> None:
+    """Refuse an initial rotation of 90 degrees or more; warn beyond equilibrium, because a unit can be missing."""
+    fraction, angle = float(problem.initial_rotation or 0.0), math.degrees(problem.rotation)
+    if abs(angle) >= 90.0:
+        facts = {"option": option, "angle": fraction}
         raise UsageError(
             "{parameter} is a fraction of the slenderness angle, {slenderness_angle:.3g} degrees, or an angle with "
-            "its unit, deg or rad; got {free:g}. For an angle of {free:g} degrees use {parameter} {free:g}deg",
-            parameter=option, slenderness_angle=math.degrees(alpha), free=initial_rotation,
+            "its unit, deg or rad; got {free:g}", parameter=option,
+            slenderness_angle=math.degrees(problem.balance_angle), free=fraction,
+            hint=Message("for {angle:g} degrees use {option} {angle:g}deg", facts) if abs(fraction) < 90.0 else "",
         )  # fmt: skip
-    if abs(initial_rotation) > 1.0:
+    if abs(fraction) > 1.0:
         plausibility.warn([
-            f"an initial rotation of {initial_rotation:.4g} slenderness angles, "
-            f"{math.degrees(initial_rotation * alpha):.3g} degrees, is beyond equilibrium and leads to overturning. "
-            f"Angles have a unit: {option} 5deg or 0.1rad"
+            f"an initial rotation of {fraction:.4g} slenderness angles, {angle:.3g} degrees, is beyond equilibrium and "
+            f"leads to overturning{'' if has_unit else f'. Angles have a unit: {option} 5deg or 0.1rad'}"
         ])  # fmt: skip

@@ -3,13 +3,16 @@
 This module loads pydantic. Import it only to read a file.
 """
 
+import math
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 import numpy as np
 from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 from pydantic.fields import FieldInfo
+from pydantic_core import CoreSchema, core_schema
 
+from rocking import checks
 from rocking.bodies.formats.schema import StrictTable
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
@@ -18,6 +21,37 @@ from rocking.motions.filters import geometric
 Positive = Annotated[float, Field(gt=0.0)]
 Seed = Annotated[int, Field(ge=0, le=2**63 - 1)]
 Text = Annotated[str, Field(min_length=1, max_length=200)]
+
+
+class Angle(str):
+    """Text of an angle between -90 and 90 degrees with its unit, such as 5deg.
+
+    >>> Angle.of("initial_rotation", "0.1rad").radians, Angle.of("initial_rotation", "0.5")
+    (0.1, 0.5)
+    """
+
+    radians: float
+
+    @classmethod
+    def of(cls, name: str, text: str) -> "float | Angle":
+        """Return the angle in a text, or the number in a text without a unit."""
+        if isinstance(text, cls):
+            return text
+        number, unit = checks.quantity(name, text, "rad")
+        if not unit:
+            return number
+        if abs(number) >= 0.5 * math.pi:
+            raise InvalidValueError(parameter=name, allowed="in (-90, 90) deg", value=text)
+        angle = cls(text)
+        angle.radians = number
+        return angle
+
+    @classmethod
+    def __get_pydantic_core_schema__(cls, *_: Any) -> CoreSchema:
+        # a text remains a text, because `of` needs the name of its key
+        return core_schema.no_info_wrap_validator_function(
+            lambda value, check: value if isinstance(value, cls) else check(value), core_schema.str_schema()
+        )
 
 
 def key(description: str, default: Any = None, **limits: Any) -> Any:

@@ -17,6 +17,7 @@ from rocking.errors import InvalidValueError, PureRockingWarning, located
 from rocking.motions.components import together
 from rocking.spec.bodies import body_for_motion
 from rocking.spec.construction import components_of, motion_of, restitutions_of
+from rocking.spec.fields import Angle
 from rocking.spec.reading import InputFiles
 
 if TYPE_CHECKING:
@@ -115,12 +116,11 @@ def _balance_angle(body: Any, *, right: bool) -> float:
     return math.atan2(max(ends) - sign * x, height)
 
 
-def _in_slenderness_angles(rotation: float | str | None, body: Any) -> float | None:
-    """Return an initial rotation as a fraction of the slenderness angle; text: an angle with its unit."""
-    if not isinstance(rotation, str):
+def _in_slenderness_angles(rotation: float | Angle | None, body: Any) -> float | None:
+    """Return an initial rotation as a fraction of the slenderness angle."""
+    if not isinstance(rotation, Angle):
         return rotation
-    angle, _ = checks.quantity("initial_rotation", rotation, "rad")
-    return angle / _balance_angle(body, right=angle > 0.0)
+    return rotation.radians / _balance_angle(body, right=rotation.radians > 0.0)
 
 
 def problem_of(

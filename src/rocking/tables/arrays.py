@@ -115,10 +115,10 @@ def _size(values: np.ndarray) -> int:
 
 
 def _plain(structure: Any) -> Any:
-    """Return a structure with plain texts instead of messages, because MATLAB files do not support messages."""
+    """Return a structure with plain texts instead of messages, and with cells of texts instead of padded characters."""
     if isinstance(structure, Mapping):
         return {name: _plain(value) for name, value in structure.items()}
-    if isinstance(structure, np.ndarray) and structure.dtype == object and structure.ndim == 1:
+    if isinstance(structure, np.ndarray) and structure.dtype.kind in "OU" and structure.ndim == 1:
         return text_array(structure.tolist())
     return str(structure) if isinstance(structure, str) else structure
 

@@ -440,7 +440,7 @@ REFUSED = {
         "SIZE --initial-rotation nan": "--initial-rotation must be a number",
         "SIZE --initial-rotation 7": "--initial-rotation is a fraction of the slenderness angle",
         "SIZE --initial-rotation half": "number, without unit or with one of rad, deg, got 'half'",
-        "SIZE --initial-rotation 100deg": "rotation must be in (-90, 90) deg, got '100deg'",
+        "SIZE --initial-rotation 100deg": "--initial-rotation must be in (-90, 90) deg, got '100deg'",
         "SIZE --initial-rotation 5cm": "with one of rad, deg, got '5cm'",
         "SIZE none.at2": "none.at2: no such file",
         "SIZE sinus:amplitude=1": "unknown pulse",

@@ -83,6 +83,12 @@ def test_share_of_the_slenderness_angle(run):
     # 5 alpha is less than a right angle: a warning with the units of angles, no refusal
     code, _, err = run("simulate", *SIZE, "--initial-rotation", "5")
     assert (code, "--initial-rotation 5deg or 0.1rad" in err) == (0, True)
+    # an angle with its unit needs no advice about units
+    code, _, err = run("simulate", *SIZE, "--initial-rotation", "70deg")
+    assert (code, "leads to overturning" in err, "5deg" in err) == (0, True, False)
+    # 100 degrees would be refused, and are not proposed
+    code, _, err = run("simulate", *SIZE, "--initial-rotation", "100")
+    assert (code, "fraction of the slenderness angle" in err, "100deg" in err) == (2, True, False)
 
 
 def test_models_in_space_are_listed_and_shown(printed):

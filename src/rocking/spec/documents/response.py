@@ -1,14 +1,12 @@
 """The file of one response."""
 
-import math
 from typing import Any, Literal
 
 from pydantic import Field, field_validator, model_validator
 
-from rocking import checks
 from rocking.conventions import DEFAULT_FRICTION, DEFAULT_RESTITUTION
 from rocking.errors import InvalidValueError
-from rocking.spec.fields import JobTable, key
+from rocking.spec.fields import Angle, JobTable, key
 from rocking.spec.motion_tables import ComponentsTable
 from rocking.spec.restitution_tables import RestitutionTable
 from rocking.spec.settings_tables import BOUNCE_LAW, SettingsTable
@@ -17,7 +15,7 @@ from rocking.spec.settings_tables import BOUNCE_LAW, SettingsTable
 class ResponseTable(JobTable):
     """Initial state of the body, and contact with the ground."""
 
-    initial_rotation: float | str | None = key(
+    initial_rotation: float | Angle | None = key(
         "without motion: initial rotation / slenderness angle [-], or with unit: 5deg, 0.1rad; > 0 to the right (+x), "
         "< 0 to the left"
     )
@@ -38,14 +36,9 @@ class ResponseTable(JobTable):
 
     @field_validator("initial_rotation")
     @classmethod
-    def _checked_rotation(cls, value: float | str | None) -> float | str | None:
-        """Return a number of slenderness angles, or the text of an angle with its unit."""
-        if not isinstance(value, str):
-            return value
-        rotation, unit = checks.quantity("rotation", value, "rad")
-        if unit and abs(rotation) >= 0.5 * math.pi:
-            raise InvalidValueError(parameter="rotation", allowed="in (-90, 90) deg", value=value)
-        return value if unit else rotation
+    def _checked_rotation(cls, value: float | str | None) -> float | Angle | None:
+        """Return a fraction of the slenderness angle, or an angle."""
+        return Angle.of("initial_rotation", value) if isinstance(value, str) else value
 
     @property
     def dropped(self) -> bool:
