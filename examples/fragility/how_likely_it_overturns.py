@@ -27,11 +27,12 @@ for line in found.assumed:
 
 # %%
 # The motion has the largest first-order contribution: the motions differ more than the sampled cabinets. The inputs of
-# the cabinet act together, and none of them decides alone. A difference of one part in a million in the scale of the
-# motions changes 0 of 66 outcomes.
+# the cabinet act together, and none of them decides alone. Pairs of histories differ by one part in a million in the
+# scale of the motion: of 66 pairs, 0 have different outcomes.
 
 shares = {name: share.first for name, share in found.contributions.items()}
 assert max(shares, key=shares.get) == "case"
+assert found.outcome_pairs.apart == 0
 assert 0.0 < found.chances["overturning"].value < 1.0
 write(prediction_picture(found), "how_likely_it_overturns.png")
 

@@ -73,7 +73,7 @@ def record_convert(
     output_units: Annotated[
         str | None,
         typer.Option(
-            help="Unit in formats without a fixed unit: m/s2, gal, g. [default: unit of the record]",
+            help=f"Unit in formats without a fixed unit: {', '.join(ACCELERATION_UNITS)}. [default: unit of the record]",
             rich_help_panel=options.OUTPUT,
         ),
     ] = None,
@@ -96,6 +96,7 @@ def record_convert(
     exports = Exports.of(output, _kinds())
     if output_units is not None:
         output_units = checks.one_of("--output-units", output_units, ACCELERATION_UNITS)
+        _check_free_unit(exports)
     arguments = Arguments(context, "motion")
     file = document_file(context, record[0], ("motion",), ("record",)) if len(record) == 1 else None
     files = CommandFiles(Path()) if file is None else InputFiles(file.parent)
@@ -117,6 +118,18 @@ def record_convert(
     unit = output_units or next(iter(pairs.values()))[0].metadata.get("unit", "m/s2")
     written = tuple(str(path) for _, path in exports.files)
     deliver(Conversion(pairs, unit, written), exports, as_json=as_json)
+
+
+def _check_free_unit(exports: Exports) -> None:
+    """Refuse a unit if no output file can have it."""
+    from rocking.motions.formats import formats
+
+    free = [name for name, form in formats().items() if form.unit_is_free]
+    if exports.names.isdisjoint(free):
+        raise UsageError(
+            "{parameter} needs an output file of a format without a fixed unit: {formats}",
+            parameter="--output-units", formats=", ".join(free),
+        )  # fmt: skip
 
 
 def _pairs(table: "ComponentsTable", files: "InputFiles") -> dict[str, Any]:

@@ -12,10 +12,12 @@ from rocking.cli import options
 from rocking.cli.measurements import show_league
 from rocking.cli.page import Page, bar, print_json
 from rocking.cli.spelling import UsageError
+from rocking.errors import InvalidValueError
 
 if TYPE_CHECKING:
     from rocking.answers import Answer
     from rocking.evidence.claims_of_errors import Claim
+    from rocking.evidence.measurements import DataSet
     from rocking.reports.document import Document
     from rocking.reports.paper_document import Reproduction
 
@@ -40,14 +42,13 @@ def reproduce(
         return
     if full:
         raise UsageError("--full is for {name} only", name=GAIBOR)
-    from rocking.evidence.store import selected
+    if GAIBOR in (which or ()):
+        raise UsageError("{name} cannot be combined with other names", name=GAIBOR)
     from rocking.reports.paper_document import reproduce as recomputed
 
-    which = [name for name in which or () if name != MAO]
-    _check_names(which)
-
+    data = _measurements([name for name in which or () if name != MAO])
     with bar("recomputing tables and claims", quiet=as_json):
-        result = recomputed(selected(which)) if which else recomputed()
+        result = recomputed() if data is None else recomputed(data)
     if as_json:
         print_json(result.answer())
     if output is not None:
@@ -59,21 +60,17 @@ def reproduce(
         _show(result, details=details)
 
 
-def _check_names(names: "Sequence[str]") -> None:
-    """Refuse a name that is no paper, no set of measurements and no file."""
-    from rocking.evidence.measurements import GROUPS
-    from rocking.evidence.store import OWN, PUBLISHED
+def _measurements(names: "Sequence[str]") -> "DataSet | None":
+    """Return the measurements of sets and files; None without names."""
+    from rocking.evidence.store import selected
 
-    papers, sets = (MAO, GAIBOR), (PUBLISHED, OWN, *GROUPS)
-    if GAIBOR in names:
-        raise UsageError("{name} accepts no other names", name=GAIBOR)
-    if unknown := next((name for name in names if name not in sets and not Path(name).suffix), None):
-        raise UsageError(
-            "unknown name {name!r:.60}. Papers: {papers}. Measurements for {paper}: {sets}, or a .toml or .csv file. "
-            "-o FOLDER writes all tables and figures of a paper",
-            name=unknown, papers=", ".join(papers), paper=MAO, sets=", ".join(sets),
-            hint=checks.nearest(unknown, (*papers, *sets)),
-        )  # fmt: skip
+    try:
+        return selected(names) if names else None
+    except InvalidValueError as error:
+        if (unknown := error.facts.get("name")) in names and not Path(unknown).suffix:
+            error.hint = checks.nearest(unknown, (MAO, GAIBOR)) or error.hint
+            error.add_hint(f"papers: {MAO}, {GAIBOR}; -o FOLDER writes all tables and figures of a paper")
+        raise
 
 
 def _gaibor(full: bool, output: Path | None, as_json: bool) -> None:

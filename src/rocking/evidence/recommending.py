@@ -134,7 +134,7 @@ def _chosen(models: Sequence[Any]) -> list[RestitutionModel]:
         if isinstance(candidate.model if isinstance(candidate, Interface) else candidate, Fixed):
             raise InvalidValueError(
                 "{label} is a fixed value and cannot be compared with measurements of other bodies",
-                label=candidate.label, hint="use a value measured on this body without a comparison",
+                label=candidate.label, hint="use the value directly, without a comparison",
             )  # fmt: skip
     return list(by_label.values())
 

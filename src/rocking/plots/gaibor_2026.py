@@ -10,6 +10,7 @@ from rocking.evidence.gaibor_2026 import (
     BASIN_AMPLITUDE,
     BASIN_FREQUENCY,
     BIFURCATIONS,
+    HIGHEST,
     MODELS,
     SLENDERNESS,
     TOP_SPEED,
@@ -76,7 +77,8 @@ def _bifurcations(result: GaiborReproduction, frequency: float) -> "Figure":
     """Draw the attractors of all starts over the amplitude, one row per slenderness and one column per model."""
     figure, panels = new_figure(DOUBLE, 8.6, rows=len(SLENDERNESS), columns=len(MODELS), sharex=True, sharey=True)
     grid = [(slenderness, model) for slenderness in SLENDERNESS for model in MODELS]
-    highest = max(float(result.case(*key, frequency).attractors[:, 0].max()) for key in grid)
+    amplitudes = [result.case(*key, frequency).attractors[:, 0] for key in grid]
+    highest = max((float(values.max()) for values in amplitudes if values.size), default=HIGHEST)
     lines = {"fold": ("fold", ":"), "pitchfork": ("loss of symmetry", "--")}
     shown = set()
     for axes, (slenderness, model) in zip(panels, grid, strict=True):

@@ -174,8 +174,8 @@ def _structure(table: Table, *, apart: bool) -> dict[str, Any]:
 def _structure_of_grid(grid: Grid) -> dict[str, Any]:
     if 8 * len(grid) > MOST_BYTES_OF_MATLAB:
         raise InvalidValueError(
-            "MATLAB files allow arrays up to 2 GiB, and this result has {count} {rows}", count=len(grid), rows=grid.row,
-            hint="use .nc, which MATLAB reads",
+            "MATLAB files allow arrays up to 2 GiB, and this result has arrays of {size:.3g} GiB",
+            size=8 * len(grid) / 2**30, hint="use .nc, which MATLAB reads",
         )  # fmt: skip
     results = {name: np.empty(grid.shape, kind) for name, kind in grid.results.items()}
     for name, position, values in grid.blocks():

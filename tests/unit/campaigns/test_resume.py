@@ -113,7 +113,7 @@ def test_other_histories_are_refused_by_name(finished, work, make):
 def test_other_versions_are_refused(finished, work, monkeypatch):
     """Results of two versions of the package, or of two engines, are not mixed."""
     monkeypatch.setattr(identity, "software", lambda: "9.9")
-    with pytest.raises(CampaignMismatchError, match=r"begun with software .*\. Results of 9\.9"):
+    with pytest.raises(CampaignMismatchError, match=r"The campaign was begun with software .*\. Results of 9\.9"):
         Campaign.open(finished.folder, work)
 
 

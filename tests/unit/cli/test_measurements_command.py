@@ -64,7 +64,7 @@ def test_what_is_refused(refuses, own, tmp_path):
 
 def test_a_name_that_cannot_be_reproduced_lists_the_papers(refuses):
     """A refusal lists papers, sets and output; a near miss has a suggestion, and no other name has one."""
-    refuses(("reproduce", "figure8"), "Papers: mao-2024, gaibor-2026.")
+    refuses(("reproduce", "figure8"), "papers: mao-2024, gaibor-2026")
     refuses(("reproduce", "gaibor2026"), "did you mean 'gaibor-2026'?")
     refuses(("reproduce", "publshed"), "did you mean 'published'?")
-    refuses(("reproduce", "published", "gaibor-2026"), "gaibor-2026 accepts no other names")
+    refuses(("reproduce", "published", "gaibor-2026"), "gaibor-2026 cannot be combined with other names")

@@ -200,6 +200,9 @@ def test_convert_to_another_unit(run, refuses, tmp_path):
         assert read_motion(target).peak == pytest.approx(0.980665, rel=1e-9)
     assert peaks == pytest.approx({"gal": 98.0665, "g": 0.1, "m/s2": 0.980665}, rel=1e-9)
     refuses(["record", "convert", source, "--output-units", "furlong"], "--output-units")
+    fixed = ["record", "convert", source, "--output-units", "gal", "--output", tmp_path / "site.at2"]
+    refuses(fixed, "--output-units needs an output file of a format without a fixed unit: ")
+    assert not fixed[-1].exists()
 
 
 @pytest.mark.slow

@@ -84,9 +84,9 @@ def test_warnings_of_friction() -> None:
     assert contact.friction_of_impacts == pytest.approx(1.0, rel=1e-13, abs=0.0)
     low = contact.warnings(0.1)
     assert len(low) == 2
-    assert f"rocking without slip needs a coefficient of friction of {contact.friction_of_motion:.2f}" in low[0]
+    assert f"Rocking without slip needs a coefficient of friction of {contact.friction_of_motion:.2f}" in low[0]
     assert "With 0.1 the body slides" in low[0]
-    assert "impacts without slip need a coefficient of friction of 1.00. With 0.1 the foot slips" in low[1]
+    assert "Impacts without slip need a coefficient of friction of 1.00. With 0.1 the foot slips" in low[1]
     assert contact.warnings(1.0) == []
     assert len(contact.warnings()) == 1
     assert not contact.loses_contact
@@ -117,7 +117,7 @@ def test_simulate_warns_where_sliding_would_follow() -> None:
     assert all("simulate(body, motion, friction=...)" in each for each in doubts)
     assert not response.doubts(5.0)
     assert rk.simulate(BLOCK, pulse, R, friction=0.2).sliding_distance > 0.0
-    assert any("impacts without slip" in each for each in rk.free_rocking(BLOCK, START, R).doubts(0.1))
+    assert any("Impacts without slip" in each for each in rk.free_rocking(BLOCK, START, R).doubts(0.1))
     with pytest.raises(InvalidValueError, match="friction"):
         rk.simulate(BLOCK, pulse, R, friction=-0.3)
 

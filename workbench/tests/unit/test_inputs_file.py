@@ -181,6 +181,16 @@ def test_files_that_say_something_else_are_refused(text, words):
     assert "\n" not in str(found.value)
 
 
+def test_an_initial_rotation_in_degrees_becomes_a_fraction():
+    """The page has a slider for the fraction of the slenderness angle, atan(b / h) of a block."""
+    text = "[body]\nunits = 'm'\nwidth = 1.0\nheight = 4.0\n[response]\ninitial_rotation = '{}'"
+    for word, degrees in (("5deg", 5.0), ("-0.1rad", -np.degrees(0.1))):
+        inputs = inputs_from_toml(text.format(word), known)
+        expected = degrees / np.degrees(np.arctan(1.0 / 4.0))
+        assert inputs.response.initial_rotation == pytest.approx(expected, rel=1e-12)
+        assert inputs_from_toml(inputs_as_toml(inputs), known) == inputs
+
+
 def test_a_record_may_be_given_by_hash_or_name():
     """A person may name an uploaded record by its hash or its file."""
     text = "[body]\nunits = 'm'\nwidth = 1.0\nheight = 2.0\n[motion]\nrecord = '{}'"

@@ -110,17 +110,18 @@ class GroundForces:
         if not self.loses_contact and self.friction_of_motion > friction:
             warnings.append(
                 Message(
-                    "rocking without slip needs a coefficient of friction of {needed:.2f}. With "
-                    "{friction:g} the body slides; {consequence}",
-                    {"needed": self.friction_of_motion, "friction": friction, "consequence": _FOLLOWS},
+                    "Rocking without slip needs a coefficient of friction of {needed:.2f}. With "
+                    "{friction:g} the body slides. Use simulate(body, motion, friction=...)",
+                    {"needed": self.friction_of_motion, "friction": friction},
                 )
             )
         if self.friction_of_impacts > friction:
             warnings.append(
                 Message(
-                    "impacts without slip need a coefficient of friction of {needed:.2f}. With "
-                    "{friction:g} the foot slips and loses more energy; {consequence}",
-                    {"needed": self.friction_of_impacts, "friction": friction, "consequence": _FOLLOWS},
+                    "Impacts without slip need a coefficient of friction of {needed:.2f}. With "
+                    "{friction:g} the foot slips and loses more energy. Use "
+                    "simulate(body, motion, friction=...)",
+                    {"needed": self.friction_of_impacts, "friction": friction},
                 )
             )
         return warnings

@@ -325,9 +325,9 @@ def _attribute(body: Any, names: tuple[str, ...]) -> Any:
         if getattr(body, name, None) is not None:
             return getattr(body, name)
     raise InvalidValueError(
-        "{parameter} must be {allowed}; a body in space needs {attributes}, got {type} without this attribute",
+        "{parameter} must be {allowed}; a 3D body needs {attributes}, got {type} without this attribute",
         parameter="body",
-        allowed="a Block, a Section, MassPoints or a body in space", attributes=" or ".join(names),
+        allowed="a Block, a Section, MassPoints or a 3D body", attributes=" or ".join(names),
         type=type(body).__name__,
     )  # fmt: skip
 

@@ -84,7 +84,7 @@ def _component(name: str, motion: Component) -> tuple[FloatArray, FloatArray]:
     segments = motion.upright_segments() if along_z else motion.segments()  # type: ignore[union-attr]
     if segments.vertical is not None:
         raise InvalidValueError(
-            "the motion of the {component} component must not have a vertical part", component=name,
+            "the component {component} must not have a vertical part", component=name,
             hint="use vertical=GroundMotion(...)",
         )  # fmt: skip
     return np.asarray(np.arange(segments.count + 1) * segments.step, dtype=np.float64), segments.horizontal

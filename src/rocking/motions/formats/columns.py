@@ -54,6 +54,7 @@ class Columns(RecordFormat):
     name: ClassVar[str] = "columns"
     title: ClassVar[str] = "Columns of numbers: a, or t a, or t a1 a2 a3, or under a line of names"
     suffixes: ClassVar[tuple[str, ...]] = (".txt", ".dat", ".csv")
+    unit_is_free: ClassVar[bool] = True
     states_unit: ClassVar[bool] = False
     states_time_step: ClassVar[bool] = False
     notes: ClassVar[str] = (

@@ -22,6 +22,7 @@ class Eqsig(RecordFormat):
     name: ClassVar[str] = "eqsig"
     title: ClassVar[str] = "eqsig and OpenSees: a line `npts dt`, with or without a name above, then accelerations"
     suffixes: ClassVar[tuple[str, ...]] = (".txt", ".dat", ".acc")
+    unit_is_free: ClassVar[bool] = True
     states_unit: ClassVar[bool] = False
     notes: ClassVar[str] = (
         "Verified with one file of eqsig. Accelerations and velocities, or g and m/s2, are not distinguishable."

@@ -198,6 +198,7 @@ class RecordFormat(ABC):
     name: ClassVar[str]  # name for `format=` and on the command line
     title: ClassVar[str]  # publisher of such files, in one line
     suffixes: ClassVar[tuple[str, ...]] = ()  # usual extensions in lower case; not used for detection
+    unit_is_free: ClassVar[bool] = False  # True if written files can have any unit of acceleration
     states_unit: ClassVar[bool] = True  # True if the files contain the unit; otherwise the user must state the unit
     states_time_step: ClassVar[bool] = True  # True if the files contain the time step; otherwise the user must state it
     notes: ClassVar[str] = ""  # limits of the format and its verification

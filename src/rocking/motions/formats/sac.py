@@ -36,6 +36,7 @@ class Sac(RecordFormat):
     name: ClassVar[str] = "sac"
     title: ClassVar[str] = "SAC, binary, version 6 or 7"
     suffixes: ClassVar[tuple[str, ...]] = (".sac",)
+    unit_is_free: ClassVar[bool] = True
     states_unit: ClassVar[bool] = False
     notes: ClassVar[str] = "SAC files contain no unit: add units=. Counts are not accelerations. ObsPy is required."
 

@@ -82,8 +82,8 @@ def lyapunov_exponents(
     """Return the exponents of orbits from times, rotations and velocities, shape (orbits, 3), or random states."""
     settled, kept = checks.whole("settled", settled, ALIGNED), checks.whole("kept", kept, 1)
     if starts is None:
-        number = 16 * checks.whole("orbits", orbits, 1)
-        draws = np.random.default_rng(checks.whole("seed", seed)).random((number, 2)) * [2.0 * math.pi, 1.0]
+        orbits = checks.whole("orbits", orbits, 1)
+        draws = np.random.default_rng(checks.whole("seed", seed)).random((16 * orbits, 2)) * [2.0 * math.pi, 1.0]
         starts = start_states(system, draws)  # those that overturn at once are of no attractor
         alive = over_periods(system, starts, kept=ALIGNED, numerics=numerics).ending == NONE
         starts = starts[np.argsort(~alive, kind="stable")[:orbits]]

@@ -113,7 +113,7 @@ def test_components_with_different_steps_are_one_motion():
     )
     assert not found[~inside, 1].any()
     np.testing.assert_allclose(found[:, 2], 2.0 * pulse.acceleration(time), rtol=0.0, atol=1e-10)
-    with pytest.raises(InvalidValueError, match="must not have a vertical part"):
+    with pytest.raises(InvalidValueError, match="the component x must not have a vertical part"):
         ground_of(rk.GroundMotion(x.acceleration, 0.02, x.acceleration))
     with pytest.raises(InvalidValueError, match="GroundMotion"):
         ground_of([1.0, 2.0])

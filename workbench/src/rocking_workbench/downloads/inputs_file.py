@@ -12,10 +12,12 @@ from pydantic import ValidationError
 from rocking.bodies.formats.schema import BLOCK_KEYS
 from rocking.bodies.formats.words import from_pydantic
 from rocking.conventions import DEFAULT_RESTITUTION, Assumed
+from rocking.spec.fields import Angle
+from rocking.spec.response import problem_of
 from rocking.spec.schema import migrated
 from rocking.version import SOFTWARE
 from rocking_workbench.errors import Refused
-from rocking_workbench.inputs import Inputs, parsed_toml
+from rocking_workbench.inputs import Inputs, body_from, parsed_toml
 from rocking_workbench.plain_text import plain_line, record_file_name, toml_of, toml_value
 from rocking_workbench.records import is_hash
 
@@ -88,9 +90,17 @@ def inputs_from_toml(text: str, find: FindRecord) -> Inputs:
     if isinstance(motion, dict) and isinstance(motion.get("record"), str):
         document["motion"] = motion | _stored(motion["record"], text, find)
     try:
-        return Inputs.model_validate(document)
+        inputs = Inputs.model_validate(document)
     except ValidationError as error:
         raise Refused(plain_line(str(from_pydantic(error.errors(include_url=False))), 500)) from error
+    return _with_fraction(inputs) if isinstance(inputs.response.initial_rotation, Angle) else inputs
+
+
+def _with_fraction(inputs: Inputs) -> Inputs:
+    """Return inputs with the initial rotation as a fraction of the slenderness angle, as on the page."""
+    fraction = problem_of(inputs, body_from(inputs.body), None).initial_rotation
+    response = inputs.response.model_copy(update={"initial_rotation": fraction})
+    return inputs.model_copy(update={"response": response})
 
 
 def _head(inputs: Inputs) -> list[str]:
