@@ -170,8 +170,8 @@ class Identity:
                     hint="finish it where it was begun, or create a new campaign",
                 ).at(str(folder))  # fmt: skip
             raise CampaignMismatchError(
-                "The campaign was begun with {software} {expected}. Results of {version}, installed here, may differ in "
-                "the last bits",
+                "The campaign was begun with {software} {expected}. Results of {version}, installed here, may differ "
+                "in the last bits",
                 software=kind, expected=before, version=here,
                 hint=f"finish it with {before}, or create a new campaign",
             ).at(str(folder))  # fmt: skip

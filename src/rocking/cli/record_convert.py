@@ -73,7 +73,8 @@ def record_convert(
     output_units: Annotated[
         str | None,
         typer.Option(
-            help=f"Unit in formats without a fixed unit: {', '.join(ACCELERATION_UNITS)}. [default: unit of the record]",
+            help=f"Unit in formats without a fixed unit: {', '.join(ACCELERATION_UNITS)}. "
+            "[default: unit of the record]",
             rich_help_panel=options.OUTPUT,
         ),
     ] = None,

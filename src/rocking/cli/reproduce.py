@@ -67,7 +67,8 @@ def _measurements(names: "Sequence[str]") -> "DataSet | None":
     try:
         return selected(names) if names else None
     except InvalidValueError as error:
-        if (unknown := error.facts.get("name")) in names and not Path(unknown).suffix:
+        unknown = str(error.facts.get("name", ""))
+        if unknown in names and not Path(unknown).suffix:
             error.hint = checks.nearest(unknown, (MAO, GAIBOR)) or error.hint
             error.add_hint(f"papers: {MAO}, {GAIBOR}; -o FOLDER writes all tables and figures of a paper")
         raise
