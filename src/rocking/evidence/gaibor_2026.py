@@ -218,7 +218,7 @@ def case(slenderness: int, model: str, frequency: float, effort: ComparisonEffor
 
 def first_overturning(system: HarmonicRocking, amplitudes: FloatArray) -> float:
     """Return the first amplitude that overturns a body from rest also with another step error; NaN for none."""
-    numerics = Numerics(step_error=30.0 * STEP_ERROR)  # after long chaotic motion the rounding decides
+    numerics = Numerics(step_error=10.0 * STEP_ERROR)  # after long chaotic motion the rounding decides
     for amplitude in amplitudes.tolist():
         if (
             ends_of(system.changed("amplitude", amplitude), 0.0, 0.0, impacts=5000, numerics=numerics)[0]

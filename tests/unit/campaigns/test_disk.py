@@ -183,7 +183,7 @@ def test_second_resumer_is_told_who_runs_it(finished):
     """Two at once: the second one gets a sentence with process and machine, and harms nothing; after kill -9 it may."""
     before = finished.sha256()
     with holding(finished.folder) as process:
-        with pytest.raises(CampaignBusyError, match=rf"process {process.pid} on .* runs this campaign; wait for it"):
+        with pytest.raises(CampaignBusyError, match=rf"process {process.pid} on .* runs this campaign; wait until"):
             finished.run()
         assert str(process.pid) in str(finished.status().running)
         process.kill()

@@ -273,7 +273,7 @@ def test_curves_that_cross_are_shown_as_they_are_exported(run, answered, tmp_pat
         assert float(row["Median Demand"]) * G == pytest.approx(curve["median"], rel=1e-14)
         assert float(row["Total Dispersion (Beta)"]) == curve["dispersion"]
         assert f"{float(row['Median Demand']):.4g} {curve['dispersion']:.3g}" in words
-        assert reason in row["Data Quality and Relevance"]
+        assert reason.rstrip(".") in row["Data Quality and Relevance"]
 
 
 def test_curves_that_cross_can_be_refused(run, answered, tmp_path):
