@@ -72,5 +72,5 @@ def test_page_and_files(run, tmp_path):
 def test_the_warning_names_the_option(run):
     """Where pure rocking takes more friction than there is, the page says what to type."""
     page = run(*SLENDER, SINE, "--set", "response.assumed_friction=0.2")[1]
-    assert "use --friction" in page
+    assert "Use --friction" in page
     assert "friction=..." not in page

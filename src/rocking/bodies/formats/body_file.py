@@ -273,8 +273,8 @@ def body_to_toml(body: Body | Restrained) -> str:
 
 @body_to_toml.register
 def _(body: Block) -> str:
-    keys = ("width", "height", *(() if isinstance(body.depth, Assumed) else ("depth",)), "density")
-    sizes = (f"{key} = {_number(getattr(body, key))}" for key in keys)
+    width, height, density = (f"{key} = {_number(getattr(body, key))}" for key in ("width", "height", "density"))
+    sizes = (width, height, *_depth_of(body), density)
     feet = [] if body.stands_on_corners else [f"feet = {_row(body.feet)}"]
     return _lines('units = "m"', "", "[block]", *sizes, *feet, *_known_of(body, 0.0, 0.0))
 
@@ -291,7 +291,7 @@ def _(body: MassPoints) -> str:
 def _(body: Section) -> str:
     remarks, x, y = _coordinates(body)
     lines = [*remarks, 'units = "m"', "", "[section]", f"feet = {_row([x[foot] for foot in body.local_feet])}"]
-    lines += [] if isinstance(body.depth, Assumed) else [f"depth = {_number(body.depth)}"]
+    lines += _depth_of(body)
     lines.append(f"ground = {_number(0.0 if remarks else body.ground)}")
     lines += _known_of(body, 0.0 if remarks else body.origin_x, 0.0 if remarks else body.ground)
     for region in body.regions:
@@ -321,6 +321,12 @@ def _toml(value: Any) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     return _row(value) if isinstance(value, list) else f'"{value}"' if isinstance(value, str) else _number(value)
+
+
+def _depth_of(body: Block | Section) -> list[str]:
+    """Return the line of the depth, unless it is the default, which stays assumed."""
+    is_default = isinstance(body.depth, Assumed) and body.depth == DEFAULT_DEPTH
+    return [] if is_default else [f"depth = {_number(body.depth)}"]
 
 
 def _known_of(body: Block | Section, x: float, y: float) -> list[str]:
