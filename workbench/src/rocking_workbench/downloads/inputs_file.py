@@ -12,7 +12,6 @@ from pydantic import ValidationError
 from rocking.bodies.formats.schema import BLOCK_KEYS
 from rocking.bodies.formats.words import from_pydantic
 from rocking.conventions import DEFAULT_RESTITUTION, Assumed
-from rocking.spec.fields import Angle
 from rocking.spec.response import problem_of
 from rocking.spec.schema import migrated
 from rocking.version import SOFTWARE
@@ -93,7 +92,7 @@ def inputs_from_toml(text: str, find: FindRecord) -> Inputs:
         inputs = Inputs.model_validate(document)
     except ValidationError as error:
         raise Refused(plain_line(str(from_pydantic(error.errors(include_url=False))), 500)) from error
-    return _with_fraction(inputs) if isinstance(inputs.response.initial_rotation, Angle) else inputs
+    return inputs if isinstance(inputs.response.initial_rotation, float | None) else _with_fraction(inputs)
 
 
 def _with_fraction(inputs: Inputs) -> Inputs:
