@@ -67,7 +67,7 @@ const Sizes = ({ shape, units, table, put, error }) => {
   return html`
     <div class="fields" data-testid="sizes">
       ${SHAPES[shape].fields.map(([key, label, more]) => field(key, label, { unit: units, ...(more?.min === undefined && limits), ...more }))}
-      ${field("depth", "Depth", { unit: units, optional: true, ...limits, help: "Depth, across the motion. Default: 1\u00a0m. The assessment warns if the depth is the weaker side." })}
+      ${field("depth", "Depth", { unit: units, optional: true, ...limits, help: "Depth, across the motion. Empty: 1\u00a0m. The assessment warns if the depth is the weaker side." })}
       ${shape !== "section" && positive("density", "Density", "kg/m3", "Empty: 2400\u00a0kg/m\u00b3.")}
       ${positive("mass", "Mass", "kg", "Replaces the density.")}
       ${pair("centre", ["Centre of mass x", "Centre of mass y"], "Both empty: homogeneous body.", "Enter both x and y.")}
