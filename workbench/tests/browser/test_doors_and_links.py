@@ -90,6 +90,26 @@ def test_a_new_link_signs_an_open_tab_in_again(open_page: Callable[..., Any], se
     assert "token" not in page.url
 
 
+def test_a_call_refused_before_the_sign_in_is_repeated(open_page: Callable[..., Any], served: Any) -> None:
+    """The refusal of a call that was sent without the cookie arrives after the sign-in: no second dialog."""
+    page = open_page()
+    page.get_by_test_id("facts-table").wait_for()
+    page.context.clear_cookies()
+    refused: list[Any] = []
+    page.route("**/api/questions", lambda route: refused.append((route, route.fetch())), times=1)
+    page.evaluate("() => void (window.late = import('/app/api.js').then((api) => api.call('questions')))")
+    page.locator("#view-body").get_by_label("Width").fill("0.75")
+    door = page.get_by_role("dialog", name="Sign in again")
+    door.wait_for()
+    assert [answer.status for _, answer in refused] == [401]
+    page.goto(served.api("session/link")["url"])
+    expect(door).to_have_count(0)
+    route, answer = refused[0]
+    route.fulfill(response=answer)
+    assert page.evaluate("window.late.then((answer) => answer.questions)") == []
+    expect(door).to_have_count(0)
+
+
 def test_the_door_of_an_open_tab_takes_a_pasted_link(open_page: Callable[..., Any], served: Any) -> None:
     """A wrong link is refused in words and may be corrected on the spot."""
     page = open_page()

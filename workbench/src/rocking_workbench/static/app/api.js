@@ -79,8 +79,13 @@ const follow = async (line) => {
   }
 };
 
-/** @param {string} path @param {CallOptions} [options] */
-const send = async (path, { method, json, body, query, signal, keepalive = false } = {}) => {
+let signIns = 0;
+document.addEventListener("rocking:signed-in", () => (signIns += 1));
+
+/** @param {string} path @param {CallOptions} [options] @returns {Promise<Response>} */
+const send = async (path, options = {}) => {
+  const { method, json, body, query, signal, keepalive = false } = options;
+  const before = signIns;
   const content = json === undefined ? body : JSON.stringify(json);
   const answer = await fetch(addressOf(path, query), {
     method: method ?? (content === undefined ? "GET" : "POST"),
@@ -97,6 +102,7 @@ const send = async (path, { method, json, body, query, signal, keepalive = false
     );
   });
   if (answer.ok) return answer;
+  if (answer.status === 401 && signIns > before) return send(path, options); // the call began before the sign-in
   throw new ApiError(answer.status, await refusalOf(answer));
 };
 

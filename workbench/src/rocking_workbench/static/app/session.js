@@ -53,15 +53,19 @@ const openOver = () => {
  * @param {string} label @param {VNode} content @param {{ stays?: boolean }} [how] */
 const over = (label, content, { stays = false } = {}) => {
   const holder = document.body.appendChild(document.createElement("div"));
+  let open = true;
   const gone = () => {
     render(null, holder);
     holder.remove();
   };
   render(html`<dialog class="over" aria-label=${label} onCancel=${(event) => stays && event.preventDefault()}
-    onClose=${() => (stays && doorMessage.value !== null ? dialog.showModal() : gone())}>${content}</dialog>`, holder);
+    onClose=${() => (stays && open ? dialog.showModal() : gone())}>${content}</dialog>`, holder);
   const dialog = /** @type {HTMLDialogElement} */ (holder.firstElementChild);
   dialog.showModal();
-  return () => dialog.close();
+  return () => {
+    open = false;
+    dialog.close();
+  };
 };
 
 const Door = ({ running = false }) => {
