@@ -116,7 +116,7 @@ class Tendon(Restraint):
     free_length : float, optional
         Length between the anchors [m].
     prestress : float
-        Force P of the upright body [N].
+        Force P of the tendon while the body is upright [N].
     loss : float
         Fraction of the prestress lost before the motion, by creep and relaxation [-].
     yield_force : float
@@ -226,7 +226,8 @@ class ViscousDamper(Restraint):
 class FrictionDamper(Restraint):
     """A rigid friction damper, F = Fs sgn e', which sticks at smaller forces.
 
-    The damper delays uplift. The damper can also hold the body at a rotation until the end. The outcome is then HELD.
+    The damper delays uplift. At the end of the ground motion, the damper can also hold the body at a rotation. The
+    outcome is then HELD.
 
     Parameters
     ----------

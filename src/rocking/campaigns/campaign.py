@@ -203,7 +203,7 @@ class Campaign:
         InvalidValueError
             If an argument is out of range.
         CampaignMismatchError
-            If the histories changed after the opening, or this machine computes other last digits.
+            If the histories changed after the opening, or results of this machine differ in the last digits.
         CampaignBusyError
             If another process runs this campaign.
         CampaignStorageError

@@ -150,8 +150,8 @@ class WorkerTask:
             raise CampaignWorkerError("this worker has the {versions}", versions=kinds)
         if here != expected:
             raise CampaignWorkerError(
-                "this worker computes other last digits: the worker has engine {engine}, the campaign has engine "
-                "{expected} ({reason})", engine=here, expected=expected, reason=identity.LAST_DIGITS,
+                "results of this worker differ in the last digits: the worker has engine {engine}, the campaign has "
+                "engine {expected} ({reason})", engine=here, expected=expected, reason=identity.LAST_DIGITS,
             )  # fmt: skip
 
     def compute(self, chunk: Chunk, threads: int | None = 1, stop: Stop = lambda: False) -> bytes | None:

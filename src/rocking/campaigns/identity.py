@@ -165,8 +165,8 @@ class Identity:
                 continue
             if kind == "engine" and kind_of(before) == kind_of(here):
                 raise CampaignMismatchError(
-                    "this machine computes other last digits: the campaign started with engine {expected}, this "
-                    "machine has engine {engine} ({reason})", expected=before, engine=here, reason=LAST_DIGITS,
+                    "results of this machine differ in the last digits: the campaign started with engine {expected}, "
+                    "this machine has engine {engine} ({reason})", expected=before, engine=here, reason=LAST_DIGITS,
                     hint="finish it where it was begun, or create a new campaign",
                 ).at(str(folder))  # fmt: skip
             raise CampaignMismatchError(

@@ -76,9 +76,10 @@ def simulate_many(  # noqa: PLR0913 - independent options
         final stable pose. Plane bodies with starts have ``start`` as the last dimension, with the coordinates
         initial_rotation [rad] and initial_angular_velocity [rad/s].
 
-        Without friction, a history of a plane body ends with its motion. The energy then determines the outcome and
-        the peak of later half cycles; later impacts are not counted. ``still_rocking`` is the state at the end of the
-        motion. The attributes contain the engine, and the reasons for invalid 3D bodies.
+        Without friction, the simulation of a plane body stops at the end of the ground motion. The energy at this time
+        determines the outcome and the peak of later half cycles; later impacts are not counted. ``still_rocking`` is
+        the state at the end of the ground motion. The attributes contain the engine, and the reasons for invalid 3D
+        bodies.
 
     Raises
     ------

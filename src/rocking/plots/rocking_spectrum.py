@@ -124,7 +124,7 @@ def _overturning(axes: "Axes", results: "xr.Dataset") -> None:
 
 
 def _sizes(axes: "Axes", results: "xr.Dataset") -> None:
-    """Scale the axes, and show the semi-diagonal above."""
+    """Set the limits of the period axis, and add an upper axis with the semi-diagonal."""
     period = np.asarray(results["period"].values)
     if period.size > 1:
         axes.set_xlim(period[0], period[-1])

@@ -39,9 +39,9 @@ class ContactBedModel(InertiaModel):
 
     The model is ``r = (rho - s a) / (rho + s (2 - a))`` with rho = (I_C + m h^2) / (m w^2), w half the distance of the
     feet, a the old lever over w, and s the distance of the impulse ahead of the plumb line over w. A table of impacts
-    resolved in time gives kappa by interpolation. Two points give Housner's impact. Many damped points give an impulse
-    near the middle of half the base. Impacts outside the table or with sliding are resolved in time, which takes about
-    one millisecond per impact. `evaluate` returns the source.
+    resolved in time gives kappa by interpolation. Two points give Housner's impact, kappa = 1. For many points with
+    large damping, kappa is about 0.5. Impacts outside the table or with sliding are resolved in time, which takes
+    about one millisecond per impact. `evaluate` returns the source.
 
     Parameters
     ----------

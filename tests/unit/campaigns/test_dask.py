@@ -31,7 +31,7 @@ def test_cluster_gives_the_same_files(cluster, finished, campaign, shards):
 @pytest.mark.parametrize(
     ("name", "value", "words"),
     [
-        ("_fingerprint", "lambda *_: '0' * 16", "this worker computes other last digits: .* fast, 0000"),
+        ("_fingerprint", "lambda *_: '0' * 16", "results of this worker differ in the last digits: .* fast, 0000"),
         ("software", "lambda: '9.9'", r"this worker has version 9\.9, but the campaign started with"),
     ],
 )

@@ -89,7 +89,7 @@ def test_worker_without_the_engine_is_refused(campaign, monkeypatch):
 @pytest.mark.parametrize(
     ("name", "value", "words"),
     [
-        ("_fingerprint", lambda *_: "0" * 16, "this worker computes other last digits: .* fast, 0000"),
+        ("_fingerprint", lambda *_: "0" * 16, "results of this worker differ in the last digits: .* fast, 0000"),
         ("software", lambda: "9.9", r"this worker has version 9\.9, but the campaign started with"),
     ],
 )

@@ -212,7 +212,7 @@ def test_libraries() -> None:
     """Motions of one batch are of one kind; none at all, a pulse with a vertical part, or other degrees are refused."""
     pulse = pulses.sine(1.0, 0.5).segments()
     for motions, message in (
-        ([], "motions must be at least one, got none"),
+        ([], "motions must contain at least one motion, got none"),
         ([MOTION, pulse], "all records or all pulses; sample the pulses"),
         ([Segments(0.1, np.zeros((3, 4)))], "all records or all pulses"),
         ([Segments(0.1, np.zeros((3, 8)), np.zeros((3, 8)))], "a pulse cannot have a vertical component; sample it"),

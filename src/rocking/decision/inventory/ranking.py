@@ -446,7 +446,7 @@ def stated(assessment: Assessment) -> str:
     """Return the used statements outside the table of the list, as a sentence; empty if there are none."""
     say = words_of(assessment)
     text = "; ".join(map(say, assessment.stated))
-    return say("Used from the lines outside the table: {stated}.", stated=text) if text else ""
+    return say("Information outside the table: {stated}.", stated=text) if text else ""
 
 
 def sentence(verdict: Verdict, assessment: Assessment) -> str:

@@ -154,7 +154,9 @@ FRICTION_REASON = Message(
 )
 CENTRE_REASON = Message("factor on the height of the centre of mass: the mass is rarely homogeneous")
 AZIMUTH_REASON = Message("the orientation of the body to the two components is unknown")
-DENSITY_REASON = Message("a factor on density changes no rotation; the factor centre represents variable density")
+DENSITY_REASON = Message(
+    "a factor on the density does not change the rotation; the input 'centre' represents non-uniform density"
+)
 
 
 def with_reason(choice: str, reason: str) -> str:

@@ -93,7 +93,9 @@ class SampledInPlane(SampledBodies):
             **({"azimuth": ((0.0, full_turn), -full_turn, full_turn, "rad")} if self._turns else {}),
         })  # fmt: skip
         if not np.isin(self.inputs["polarity"].quantile(np.linspace(0.0, 1.0, 33)), (-1.0, 1.0)).all():
-            raise InvalidValueError(parameter="polarity", allowed="1, -1 or both as a sample", value=inputs["polarity"])
+            raise InvalidValueError(
+                parameter="polarity", allowed="1, -1, or a sample of these two values", value=inputs["polarity"]
+            )
         self._set_restitution(inputs.get("restitution"))
         self._set_model_error()
 

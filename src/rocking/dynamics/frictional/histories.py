@@ -312,7 +312,7 @@ def results_of(history: HullHistory) -> tuple[list[float], list[int]]:
 def _listed(name: str, values: Any) -> list[Any]:
     items = list(values) if isinstance(values, (list, tuple, np.ndarray)) else [values]
     if not items:
-        raise InvalidValueError("{parameter} must be at least one, got none", parameter=name)
+        raise InvalidValueError("{parameter} must contain at least one value, got none", parameter=name)
     return items
 
 

@@ -56,7 +56,7 @@ def library_of(segments: Sequence[Segments]) -> Any:
     All motions have the same degree; either all motions have a vertical component, or none.
     """
     if not segments:
-        raise InvalidValueError("motions must be at least one, got none")
+        raise InvalidValueError("motions must contain at least one motion, got none")
     degree = segments[0].degree
     vertical = any(s.vertical is not None for s in segments)
     if degree not in {1, 7} or any(s.degree != degree for s in segments):

@@ -130,7 +130,7 @@ def batch_in_space(  # noqa: PLR0913, PLR0917 - the arguments of `simulate_many`
     body_list = bodies if isinstance(bodies, Sequence) and not isinstance(bodies, str) else [bodies]
     spatial_bodies, refused = converted_or_refused(SpatialBody.of, body_list)
     if not spatial_bodies:
-        raise InvalidValueError("bodies must be at least one, got none")
+        raise InvalidValueError("bodies must contain at least one body, got none")
     motion_list = _listed("motions", motions)
     grounds, names = _grounds(motion_list, duration)
     laws = [batch_law(item) for item in _listed("restitution", restitution)]
@@ -170,7 +170,7 @@ def _horizon(body: SpatialBody | None, ground: SpatialGround, duration: float | 
 def _listed(name: str, values: Any) -> list[Any]:
     items = list(values) if isinstance(values, (list, np.ndarray)) else [values]
     if not items:
-        raise InvalidValueError("{parameter} must be at least one, got none", parameter=name)
+        raise InvalidValueError("{parameter} must contain at least one value, got none", parameter=name)
     return items
 
 

@@ -118,9 +118,9 @@ def _with_missed_impact(
 
 
 def _impact(sharp: FloatArray, rate: float, times: FloatArray, orders: IntArray, order: int) -> tuple[float, float]:
-    """Return the time of an impact from earlier impacts, and the log likelihood ratio to no impact.
+    """Return the likeliest time of an impact, and the logarithm of its likelihood ratio: impact to no impact.
 
-    Both are NaN for too few earlier impacts.
+    Earlier impacts predict the time and the shape of the sound. Both values are NaN for too few earlier impacts.
     """
     about, span = next_impact(times[orders < order], orders[orders < order], order)
     if np.isnan(about):

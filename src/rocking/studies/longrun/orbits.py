@@ -20,7 +20,7 @@ class OrbitNotFoundError(RockingError):
 
 @dataclass(frozen=True, eq=False)
 class PeriodicOrbit:
-    """A periodic orbit, from one of its impacts.
+    """A periodic orbit, defined by its state after an impact.
 
     For a symmetric body the state after an impact on one foot is equivalent to the mirrored state half a period later.
     The orbit closes after `impacts` impacts and `halves` half periods of the ground motion, up to this symmetry.

@@ -90,7 +90,8 @@ class ProjectStore:
         elif version > _FORMAT:
             self._database.close()
             raise Refused(
-                "{file} was written by a later version of rocking; use that version, or another --data", file=path.name
+                "{file} was written by a later version of rocking; use that version, or another data folder (--data)",
+                file=path.name,
             )
         if fresh:
             sync_folder(path.parent)

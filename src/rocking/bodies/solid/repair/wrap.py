@@ -42,8 +42,8 @@ def surface_around_points(points: FloatArray, surface: SurfaceSource, log: Repai
     number = Message("{number} of {total}", {"number": len(kept), "total": count}) if len(kept) < count else len(kept)
     log.add_note(
         Message(
-            "used a skin around {number} points with a ball diameter of {diameter:.3g} mm; mean depth of the points "
-            "below the skin {depth:.2g} mm, possible volume change with a larger ball and twice as many points {share}",
+            "used a skin around {number} points (ball diameter {diameter:.3g} mm); mean depth of the points below the "
+            "skin: {depth:.2g} mm; possible volume change with a larger ball and twice as many points: {share}",
             {
                 "number": number,
                 "diameter": 2000.0 * radius,

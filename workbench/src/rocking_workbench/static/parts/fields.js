@@ -56,7 +56,8 @@ const saidOf = (id, error) => ({ id, "aria-describedby": `${id}-about`, "aria-in
 const TURNS = { ArrowUp: 1, ArrowDown: -1 };
 
 /** Number with its unit; decimal commas and arrow keys are allowed. `on` receives numbers within the limits only, and
- * null for an empty optional field; `moves`: 0 is not allowed; errors of a field with `aside` are not errors of the inputs.
+ * null for an empty optional field. With `moves`, the number 0 is an error. With `aside`, an error of the field does not
+ * count as an error of the inputs.
  * @param {NumberProps} props */
 export const NumberField = ({
   label, unit = "", value, on, help, error = "", kind, hidden, min, above, max, step, integer, moves, optional, aside = false,
