@@ -100,8 +100,8 @@ class Impact {
         return true;
     }
 
-    // Newton's law: all combinations of feet and sliding directions are tried. `single`: false if there are two
-    // different results.
+    // Newton's law: all combinations of feet and sliding directions are tested. If `single` is true, the function
+    // returns false for two different solutions.
     bool newton(const double (&bounce)[3], Struck& struck, bool single) const {
         double target[3];
         for (int foot : {kLeft, kRight}) target[foot] = -bounce[foot] * away_[foot];  // Eq. 70

@@ -415,7 +415,7 @@ class Run {
     }
 
     // The zero of a margin that is negative at the end of a bracket. The target is slightly below zero. The first
-    // estimate is from the interpolated motion; secant steps with real steps of that length follow.
+    // estimate is from the interpolated motion. Then each secant iteration integrates the motion to its estimate.
     double located(const Fall& f, double low, double high) {
         const Watch& w = f.what;
         const double close = w.kind == kGap ? 0.5 * kGrazed * b_.size : w.kind == kShelf ? kClosed * b_.size : w.kind == kSlipping ? 1e-3 * stop_ : slack_;

@@ -300,7 +300,7 @@ def _shown(value: Any) -> str:
 
 @contextmanager
 def located(name: str, kind: Literal["table", "file", "step"] = "table", number: int = 0) -> Iterator[None]:
-    """Add a table, a file or a step to the places of errors raised in the context.
+    """Add a table, a file or a step to the locations (`places`) of errors that the ``with`` block raises.
 
     Parameters
     ----------

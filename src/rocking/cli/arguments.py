@@ -272,7 +272,7 @@ class Arguments:
 
     def components(self, motions: Sequence[str]) -> Tables:
         """Return the tables of the motions of a 3D body by axis."""
-        # --set of format, unit and time step applies to every file, other keys apply to the motion along x or the first
+        # keys in _OF_EVERY_FILE apply to every record file; other keys apply to the motion along x or the first motion
         along = _along(motions)
         if not along:
             raise UsageError(NO_MOTION + ", along y and z with --motion y=FILE and --motion z=FILE")

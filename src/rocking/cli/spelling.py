@@ -17,7 +17,7 @@ _KEYS = {"restitution.model": "restitution"}  # keys of options with another nam
 
 
 def run_in(context: typer.Context) -> None:
-    """Set the running command, whose options messages name."""
+    """Set the running command. Messages then contain the names of its options."""
     _RUNNING.set(context)
 
 

@@ -314,7 +314,7 @@ def changed(body: Body, ballast: bool = False, /, *, out: float = 0.0, down: flo
 
 
 class Landings:
-    """Coefficients of a changed body: coefficients of the body plus the change that the restitution model gives.
+    """Coefficients of a changed body: coefficients of the body plus the change of the coefficients of the model.
 
     The changed body is a block with a different mass distribution. Without a change, the coefficients are equal.
     """

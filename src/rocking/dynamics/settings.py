@@ -18,7 +18,7 @@ from rocking.errors import InvalidValueError, MissingExtraError, SlowEngineWarni
 BOUNCE_LAWS = ("newton", "poisson", "stronge")
 """Definitions of normal restitution: ratio of velocities, ratio of impulses, or square root of the energy ratio."""
 
-# coefficient of friction of 3D bodies in a study without friction [-]; the bodies may hop, fly and fall to other poses
+# coefficient of friction if no friction is stated [-]; the body does not slide, but can hop, fly and change its pose
 NEVER_SLIDES = 1e6
 
 SHORTEST_STEP = 1e-6  # smallest `longest_step` of settings [-]

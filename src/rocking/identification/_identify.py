@@ -136,9 +136,11 @@ def _from_times(measurement: ImpactTimes, prior: Knowledge) -> Identification:
     if extra:
         doubts.append(
             Message(
-                "{count} time between the impacts is not an impact; bounces or echoes: {bounces}.",
+                "{count} recorded time between the first and the last impact is not an impact time; bounces or "
+                "echoes: {bounces}.",
                 {"count": extra, "bounces": bounces},
-                many="{count} times between the impacts are not impacts; bounces or echoes: {bounces}.",
+                many="{count} recorded times between the first and the last impact are not impact times; bounces or "
+                "echoes: {bounces}.",
             )
         )
     if prior.asymmetry and prior.tilt_error:

@@ -157,8 +157,9 @@ def resampled(motion: GroundMotion, time_step: float) -> GroundMotion:
 
     A finer step of any ratio interpolates linearly between the samples, so that every new sample is exact. If the ratio
     is a whole number, simulations do not change, but the Arias intensity decreases to that of the straight lines. A
-    coarser step must be a whole multiple. In this case, a linear-phase low pass (Hamming window, 10 taps per multiple
-    on each side, no shift) first removes the frequencies above the new Nyquist frequency.
+    coarser step must be a whole multiple of the time step of the motion. For a coarser step, a linear-phase low pass
+    (Hamming window, 10 taps per multiple on each side, no shift) first removes the frequencies above the new Nyquist
+    frequency.
 
     Parameters
     ----------

@@ -126,7 +126,7 @@ function drawCurve() {
   const canvas = element("curve"), [pen, w, h] = sized(canvas, canvas.clientHeight);
   const left = 60, right = w - 12, top = 12, bottom = h - 26, most = top + bottom;
   const falls = data.fall !== null;
-  // a fall is followed to twice the slenderness angle, small rocking fills the panel
+  // end of the rotation axis: 2 alpha if the body overturns; alpha or the peak if the peak exceeds 0.2 alpha; otherwise the peak
   const biggest = Math.max(...data.alpha);
   const span = 1.12 * (falls ? 2 * biggest : Math.max(reach, reach > 0.2 * biggest || !reach ? biggest : 0));
   const x = (time) => left + ((right - left) * time) / data.end;

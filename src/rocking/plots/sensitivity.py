@@ -32,9 +32,10 @@ _MOST = 6
 def sensitivity_picture(sensitivity: Sensitivity, *, unit: tuple[str, float] | None = None) -> "Figure":
     """Draw a comparison of restitutions.
 
-    Maps are in columns, with the baseline first. Below the other maps are maps of different outcomes, with their
-    number. Spectra and fragility have one curve per choice. Fragility curves have 95 % bands; the titles contain the
-    medians and their ratios to the median of the baseline, from the same motions.
+    Maps are in columns, with the baseline first. Below each other map, a second map shows the cells with a
+    different outcome from the baseline, and their number. Spectra and fragility have one curve per restitution.
+    Fragility curves have 95 % bands; the titles contain the medians and their ratios to the median of the baseline,
+    from the same motions.
 
     Parameters
     ----------

@@ -258,9 +258,10 @@ def minimum_overturning_acceleration(
     """Return all peak accelerations at which overturning begins or ends.
 
     The motion is scaled over a range of amplitudes in equal ratios. Intervals that may contain narrow changes are
-    bisected several times. Then all changes are bisected together. Under long records, changes may be interleaved at
-    all scales, and the result contains only the sampled changes. Below the smallest overturning amplitude, a record is
-    sampled in up to four more rounds, until two rounds do not change the minimum.
+    bisected several times. Then all changes are bisected together. Under long records, amplitudes with and without
+    overturning can alternate within any small interval. The result then contains only the changes between samples.
+    Below the smallest overturning amplitude, a record is sampled in up to four more rounds, until two rounds do not
+    change the minimum.
 
     Parameters
     ----------

@@ -45,8 +45,8 @@ class Units:
 def divided(solid: Solid, divisions: int) -> Units:
     """Return the units of a body, which conform to the shape of each part if possible.
 
-    Boxes give grids, extrusions give wedges, and bodies of revolution give sectors of rings. Polyhedra with a surface
-    visible from the centre of mass give pieces of pyramids. Other meshes give voxels.
+    Boxes give grids, extrusions give wedges, and bodies of revolution give sectors of rings. Polyhedra whose whole
+    surface is visible from the centre of mass give pieces of pyramids. Other meshes give voxels.
 
     Parameters
     ----------

@@ -77,8 +77,8 @@ class SoundConstants:
     first_revised: int = 5  # first number of a revised impact [-]; earlier impacts give the law and the mean click
     search_range: float = 0.15  # largest deviation from the expected time / interval [-]; 4.3 deviations of 0.035
     noise_range: float = 0.040  # smallest half width of the neighbourhood with the noise level [s]; development
-    loudness_ratio: float = 0.75  # level of an impact / last impact of its foot [-]; mean of 119 rooms
-    loudness_scatter: float = 0.25  # standard deviation of `loudness_ratio` / its value [-]; 119 rooms
+    loudness_ratio: float = 0.75  # level of an impact, relative to the last impact of its foot [-]; mean of 119 rooms
+    loudness_scatter: float = 0.25  # standard deviation of `loudness_ratio` divided by its value [-]; 119 rooms
     noise_tail: float = (
         8.0  # degrees of freedom of noise and echoes [-]; heavy tail: echoes are louder than normal noise
     )
@@ -94,9 +94,9 @@ class SoundConstants:
     )
     contrast_power: float = 5.0  # decrease of the contrasts of noise and echoes, as a power [-]; development
     revised_contrast: float = 3.0  # contrast of an impact detected only by its similarity [-]; slightly below neutral
-    doubtful_foot_lag: float = (
-        3e-4  # deviation of the time between feet that gives a warning [s]; onsets alone have 0.3 ms in 116 rooms
-    )
+    # largest standard deviation of the time difference of the feet without a warning [s]; the RMS error in 116 rooms is
+    # 0.3 ms if the time difference is from the distributions of the onsets alone
+    doubtful_foot_lag: float = 3e-4
     picture_pieces: int = 2000  # number of points of the sound in pictures [-]; enough for a picture
 
 

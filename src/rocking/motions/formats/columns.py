@@ -102,7 +102,8 @@ class Columns(RecordFormat):
         # check NaN and infinity first, because other errors would hide them
         for line, cells in text.first[:_LOOK]:
             _ = [_value(source, line, cell) for cell in cells if _beyond_numbers(cell)]
-        comments = _comments(source, None if text.at_once is None else text.first[0][0])  # none among plain numbers
+        # if all cells are plain numbers, comments are only above the first row
+        comments = _comments(source, None if text.at_once is None else text.first[0][0])
         stated = HeaderWords.of(source, [*comments, *text.preamble], len(text.first[0][1]))
         _check_words(source, text)
         names = text.names or stated.names

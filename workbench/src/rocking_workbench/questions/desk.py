@@ -182,7 +182,7 @@ class QuestionDesk:
             raise Refused(parameter="command", allowed=f"one of {', '.join(OUTPUTS)}", value=command)
         if format and (command != "record convert" or format not in formats()):
             raise Refused(
-                "{parameter} is allowed with convert only, one of {names}", parameter="format",
+                "{parameter} is allowed with record convert only, and must be one of {names}", parameter="format",
                 names=", ".join(formats()),
             )  # fmt: skip
         if command == WITHOUT_FILE and (tables or files):

@@ -162,7 +162,7 @@ const Earlier = ({ questions }) => questions.all.value.length > 0 && html`
     </ul>
   </section>`;
 
-/** Rejection of the server for fields: its key and its text.
+/** An error of the server, for display at a field: key of the field and text of the error.
  * @param {{ message: string, refusal?: any }} refused */
 export const refusedOf = (refused) => ({ key: refused.refusal ? keyOf(refused.refusal) : undefined, text: reasonOf(refused) });
 
