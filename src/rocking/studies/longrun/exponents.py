@@ -11,6 +11,7 @@ from rocking.studies.longrun.attractors import start_states
 from rocking.studies.longrun.system import DEFAULTS, NONE, HarmonicRocking, Numerics, over_periods
 
 ALIGNED = 60  # periods in which tangent vectors align before growth is counted
+MOST_DRAWS = 2**16  # random states for small basins of attraction, at least 16 per orbit
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,17 +80,28 @@ def lyapunov_exponents(
     seed: int = 0,
     numerics: Numerics = DEFAULTS,
 ) -> LyapunovExponents:
-    """Return the exponents of orbits from times, rotations and velocities, shape (orbits, 3), or random states."""
+    """Return the exponents of orbits from times, rotations and velocities, shape (orbits, 3), or random states.
+
+    Random states that overturn while tangent vectors align are replaced, with at most `MOST_DRAWS` states.
+    """
     settled, kept = checks.whole("settled", settled, ALIGNED), checks.whole("kept", kept, 1)
     if starts is None:
-        orbits = checks.whole("orbits", orbits, 1)
-        draws = np.random.default_rng(checks.whole("seed", seed)).random((16 * orbits, 2)) * [2.0 * math.pi, 1.0]
-        starts = start_states(system, draws)  # those that overturn at once are of no attractor
-        alive = over_periods(system, starts, kept=ALIGNED, numerics=numerics).ending == NONE
-        starts = starts[np.argsort(~alive, kind="stable")[:orbits]]
+        starts = _random_starts(system, checks.whole("orbits", orbits, 1), checks.whole("seed", seed), numerics)
     result = over_periods(system, starts, settled=settled, kept=kept, vectors=2, numerics=numerics)
     duration = kept * system.excitation.period
     exponents = result.growth / duration
     exponents[result.rests > 0] = -np.inf
     exponents[result.ending != NONE] = np.nan
     return LyapunovExponents(system, exponents, result.impacts / duration, duration)
+
+
+def _random_starts(system: HarmonicRocking, orbits: int, seed: int, numerics: Numerics) -> FloatArray:
+    """Return random states after an impact, first those that do not overturn while tangent vectors align."""
+    generator, last = np.random.default_rng(seed), max(MOST_DRAWS, 16 * orbits)
+    alive, lost, drawn = np.empty((0, 3)), np.empty((0, 3)), 0
+    while len(alive) < orbits and drawn < last:
+        starts = start_states(system, generator.random((16 * orbits, 2)) * [2.0 * math.pi, 1.0])
+        remains = over_periods(system, starts, kept=ALIGNED, numerics=numerics).ending == NONE
+        alive, lost = np.concatenate([alive, starts[remains]]), np.concatenate([lost, starts[~remains]])[:orbits]
+        drawn += len(starts)
+    return np.concatenate([alive, lost])[:orbits]

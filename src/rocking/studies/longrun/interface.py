@@ -144,7 +144,8 @@ def lyapunov(  # noqa: PLR0913 - every one of them is a question that users ask
     body, excitation, restitution
         As for `poincare`.
     orbits : int, optional
-        Number of orbits with random initial states; orbits that overturn within 60 periods are replaced if possible.
+        Number of orbits with random initial states. Orbits that overturn within 60 periods are replaced, with at most
+        65,536 random states, or 16 per orbit if these are more.
     cycles : tuple of int, optional
         Number of periods before growth is counted, at least 60, and with counted growth.
     seed, linear, gravity, threads
@@ -154,7 +155,8 @@ def lyapunov(  # noqa: PLR0913 - every one of them is a question that users ask
     -------
     xarray.Dataset
         Over orbit: both exponents [1/s], minus infinity for an orbit with rests, NaN for one that overturns; impacts
-        per second. `rocking.plots.lyapunov_picture` draws mean and standard errors.
+        per second. `rocking.plots.lyapunov_picture` draws mean and standard errors; the mean is that of one attractor
+        only if all orbits are on it.
 
     Raises
     ------
