@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import rocking as rk
-from rocking.cli import main
+from rocking.cli import main, page
 from rocking.dynamics.rolling import SpatialStart
 from rocking.dynamics.rolling.batch import batch_in_space
 
@@ -58,13 +58,23 @@ def command(words: list[str], folder: Path) -> dict[str, Any]:
     code: Any = None
     os.chdir(folder)
     try:
-        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err), _without_progress():
             main(words)
     except SystemExit as stop:
         code = stop.code or 0
     finally:
         os.chdir(before)
     return {"code": code, "out": out.getvalue(), "err": err.getvalue()}
+
+
+@contextlib.contextmanager
+def _without_progress() -> Iterator[None]:
+    """Print no line of progress, which only a slow machine prints."""
+    interval, page.SECONDS = page.SECONDS, 1e6  # [s]
+    try:
+        yield
+    finally:
+        page.SECONDS = interval
 
 
 @contextlib.contextmanager

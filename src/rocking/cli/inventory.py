@@ -222,7 +222,7 @@ class InventoryAnswer:
         plan = self.assessment.plan
         count = len(plan) if self.details else _MOST_PLANNED
         if plan:
-            page.line(f"\n{say('First measures, one per object is sufficient:')}")
+            page.line(f"\n{say('First measures (one measure per object is sufficient):')}")
         for k, entry in enumerate(plan[:count], start=1):
             page.line(f"{k:3}  {ranking.plan_words(entry, say)}")
         if (remaining := len(plan) - count) > 0:

@@ -126,7 +126,8 @@ def test_resurrection_is_said(run, answered):
     assert low["interval"][1] / unit == pytest.approx(3.48466273332249203, rel=1e-7)
     assert high["interval"][0] / unit == pytest.approx(3.6311498724447945014, rel=1e-7)
     assert result["resurrected_motions_over_1_percent"] == [0]
-    assert "1 of 1 motion overturns the body at a level but not at higher levels" in run(*words, "--details")[1]
+    sentence = "Under 1 of 1 motion the body overturns at a level but not at a higher level"
+    assert sentence in run(*words, "--details")[1]
 
 
 def test_cloud(run, answered, motions):

@@ -62,7 +62,7 @@ def test_the_report_is_in_german(found, monkeypatch):
         assert german in text
     assert not re.search(r"(?<![\d:.])\d\.\d+ (?:g|cm|m/s)\b", text)
     assert len(foreign(texts(inventory_document(replace(found, language="en"))), "de")) > 30
-    lost = "No measure against rocking is needed; check that it cannot slide off."
+    lost = "No measure against rocking is needed. Check that the object cannot slide off."
     monkeypatch.delitem(language("de").catalogue._catalog, lost)  # negative control
     assert foreign(texts(inventory_document(found)), "de") == [lost]
 

@@ -187,7 +187,7 @@ def _field(key: str, kind: Any, description: Any = None, quantity: str | None = 
 
 Messages: Any = (
     dict[str, MessageData],
-    Field({}, description="messages of this answer, by sentence"),
+    Field({}, description="data of each message in this answer, by its English text"),
 )
 Units: Any = (dict[str, str], "unit of every number, by the name of its quantity")
 
@@ -220,8 +220,8 @@ AllowedData: Any = shape(
     "AllowedData",
     "The allowed values of a parameter; low and high are null where a range has no end.",
     sentence=str,
-    low=(float | None, Field(None, description="lower end, in the unit of the refusal")),
-    high=(float | None, Field(None, description="upper end, in the unit of the refusal")),
+    low=(float | None, Field(None, description="lower limit, in `unit` of the refusal")),
+    high=(float | None, Field(None, description="upper limit, in `unit` of the refusal")),
     low_open=(bool, False),
     high_open=(bool, False),
 )

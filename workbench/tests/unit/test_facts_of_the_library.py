@@ -11,6 +11,7 @@ import rocking as rk
 import rocking_workbench
 from rocking.conventions import COMPARED_RESTITUTIONS, DEFAULT_RESTITUTION
 from rocking.motions import measures
+from rocking.restitution.headline import label_of
 from rocking.spec.questions import question_in
 from rocking.spec.reading import tables_of
 from rocking_workbench.api.body import described
@@ -29,6 +30,8 @@ def test_requests_and_scripts_have_the_default_restitution():
     script = Path(rocking_workbench.__file__).parent / "static/app/inputs.js"
     models = re.search(r"DEFAULT_MODELS = (\[.*?\]);", script.read_text("utf-8"))
     assert json.loads(models[1]) == [DEFAULT_RESTITUTION, *COMPARED_RESTITUTIONS]
+    form = script.parents[1].joinpath("views/space.js").read_text("utf-8")
+    assert re.findall(r'\blaw: "(.*?)"', form) == [label_of(DEFAULT_RESTITUTION, in_space=True)]
 
 
 def test_every_measure_is_listed():

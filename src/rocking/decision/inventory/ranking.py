@@ -32,7 +32,7 @@ _TITLES = {
     "low": Message("overturned, low [%]"),
     "high": Message("overturned, high [%]"),
     "median": Message("median rotation / angle"),
-    "quantile": Message("84 % rotation / angle"),
+    "quantile": Message("84 % quantile of rotation / angle"),
     "others": Message("light with other models"),
     "words": Message("description"),
     "advice": Message("recommendation"),
@@ -476,7 +476,7 @@ def advice(verdict: Verdict, assessment: Assessment) -> str:
     """Return the recommended measure for an object."""
     say, light = words_of(assessment), verdict.light
     if light is Light.GREEN:
-        return say("No measure against rocking is needed; check that it cannot slide off.")
+        return say("No measure against rocking is needed. Check that the object cannot slide off.")
     measure = (
         say("Secure it, lower its centre of mass, or widen its base.")
         if math.isfinite(verdict.friction)

@@ -282,11 +282,11 @@ class IncrementalDynamicAnalysis(MultipleStripeAnalysis):
             "standing": len(self.resurrected()), "count": int(self.complete.sum()), "wide": len(self.resurrected(WIDE)),
         }  # fmt: skip
         return Message(
-            "{standing} of {count} motion overturns the body at a level but not at higher levels ({wide} over more "
-            "than 1 % of the level).",
+            "Under {standing} of {count} motion the body overturns at a level but not at a higher level ({wide} "
+            "with a safe interval wider than 1 % of the level).",
             facts,
-            "{standing} of {count} motions overturn the body at a level but not at higher levels ({wide} over more "
-            "than 1 % of the level).",
+            "Under {standing} of {count} motions the body overturns at a level but not at a higher level ({wide} "
+            "with a safe interval wider than 1 % of the level).",
         )
 
     def fraction_resurrected(self, wider_than: float = 0.0) -> float:

@@ -68,7 +68,7 @@ class HostedQuestion:
     id: Annotated[str, "identifier in URLs"]
     command: Command
     name: Annotated[str, "display name"]
-    project: Annotated[str, "project of the item; empty if none"]
+    project: Annotated[str, "project of the run; empty if none"]
     asked: Annotated[str, "time in UTC"]
     state: State = "waiting"
     message: Annotated[str, "reason for a missing answer, or empty"] = ""

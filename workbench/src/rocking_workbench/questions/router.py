@@ -55,7 +55,7 @@ class NewQuestion(BaseModel):
         Field(description="SHA-256 of each file, by its name in the tables; records/NAME in a folder"),
     ] = Field(default_factory=dict)
     name: Annotated[str, Field(max_length=200, description="display name")] = ""
-    project: Annotated[str, Field(max_length=40, description="project of the item")] = ""
+    project: Annotated[str, Field(max_length=40, description="project of the run")] = ""
     format: Annotated[str, Field(max_length=20, description="additional output format of convert")] = ""
 
 

@@ -45,7 +45,7 @@ class StudyRequest(BaseModel):
 
     name: Annotated[str | None, Field(max_length=200, description="name; default: name in the job")] = None
     job: Annotated[dict[str, Any], Field(description=_JOB)]
-    project: Annotated[str, Field(max_length=40, description="project of the item")] = ""
+    project: Annotated[str, Field(max_length=40, description="project of the study")] = ""
 
 
 class PointRequest(BaseModel):
@@ -152,7 +152,7 @@ async def export_study(
         str | None,
         Query(max_length=40, description="WHAT of `rocking campaign export --output WHAT=FILE`"),
     ] = None,
-    restitution: Annotated[Whole, Query(description="index of the restitution of curves")] = 0,
+    restitution: Annotated[Whole, Query(description="index of the restitution whose curves are exported")] = 0,
     crossing_curves: Annotated[Crossing | None, Query(description="treatment of crossing fragility curves")] = None,
 ) -> Response:
     """Return a finished study as a file."""

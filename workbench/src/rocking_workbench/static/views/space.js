@@ -23,14 +23,14 @@ const SURFACES = [["", "faces of the mesh"], ["wrap", "skin over the points (\"w
 const INNER = [["", "refused (\"refuse\")"], ["solid", "solid (\"solid\")"], ["cavity", "cavities (\"cavity\")"]];
 const SHAKEN = [["x", "the motion of this project, along x"], ["y", "the motion of this project, along y"], ["records", "records along x, y and z"]];
 const LAWS = [
-  ["ked-3d", "kinetic energy distribution (ked-3d)"], ["calibrated-3d", "calibrated model (calibrated-3d)"],
+  ["calibrated-3d", "calibrated model (calibrated-3d)"], ["ked-3d", "kinetic energy distribution (ked-3d)"],
   ["housner-3d", "Housner's (housner-3d)"], ["", "a coefficient"],
 ];
 
 const OWN = "project"; // chosen in place of a scan
 const FIRST = {
   files: [], chosen: "", analysis: "equilibria", units: "", up: "", repair: "", surface: "", inner: "", density: "", pose: null,
-  shaken: "x", friction: "0.4", law: "ked-3d", coefficient: "0.8", times: "1", recordUnits: "", along_x: [], along_y: [], along_z: [],
+  shaken: "x", friction: "0.4", law: "calibrated-3d", coefficient: "0.8", times: "1", recordUnits: "", along_x: [], along_y: [], along_z: [],
 };
 const BODY = ["files", "chosen", "analysis", "units", "up", "repair", "surface", "inner", "density"];
 const MOVES = ["shaken", "friction", "law", "coefficient", "times", "recordUnits"];
