@@ -19,6 +19,7 @@ from rocking.cli.page import Page, deliver
 from rocking.cli.restitution import named_body
 from rocking.cli.solids import show_body
 from rocking.cli.spelling import UsageError
+from rocking.spec.bodies import without_restraints
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -47,7 +48,7 @@ def equilibria(
     """Run `rocking equilibria`."""
     exports = Exports.of(output, EXPORTS)
     arguments = Arguments(context, "body")
-    subject, _ = named_body(arguments, quiet=as_json)
+    subject = without_restraints(named_body(arguments, quiet=as_json)[0])
     if isinstance(subject, (Block, Section)):
         subject = Solid.from_section(subject)
         subject.name = Path(body or "").name

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rocking.answers import Answer, Display
-from rocking.bodies import Body
+from rocking.bodies import Body, Restrained
 from rocking.cli import completion, options
 from rocking.cli.arguments import Arguments, document_file, hinted, with_sets
 from rocking.cli.exports import DRAWN, PICTURES, Export, Exports, write_records
@@ -87,6 +87,10 @@ def restitution(
         )
     subject, gravity = named_body(arguments, quiet=as_json, in_space="space" in exports.names)
     length = arguments.length or "m"
+    if isinstance(subject, Restrained):
+        note = "restraints give no impulse at an impact; the coefficients are of the body without restraints."
+        print(f"{context.params['body']}: {note}", file=sys.stderr if as_json else sys.stdout)
+        subject = subject.body
     if isinstance(subject, Body):
         from rocking.reports.body_facts import ImpactAnswer
 

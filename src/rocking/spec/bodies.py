@@ -55,6 +55,7 @@ def body_for_motion(table: dict[str, Any], inputs: InputFiles | None, *, in_spac
     body = any_body_of(table, inputs)
     if not in_space or not isinstance(body, (Body, Restrained)):
         return body
+    without_restraints(body)
     tables = (tables_in(inputs.file(table["file"])) or {}) if inputs is not None and "file" in table else table
     inner_tables = (table_with_depth for table_with_depth in tables.values() if isinstance(table_with_depth, dict))
     if not isinstance(body, (Block, Section)) or not any(

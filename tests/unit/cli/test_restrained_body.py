@@ -1,0 +1,44 @@
+"""Commands with a body file that has `[[restraint]]`."""
+
+import json
+
+import pytest
+
+BLOCK = 'units = "m"\n[block]\nwidth = 1.0\nheight = 6.0\ndepth = 1.0\nmass = 4000.0\n'
+PIER = BLOCK + '[[restraint]]\nkind = "tendon"\nx = 0.5\nstiffness = 500e3\nprestress = 20e3\n'
+DOCUMENT = PIER.replace("[block]", "[body.block]").replace("[[restraint]]", "[[body.restraint]]")
+DOCUMENT = DOCUMENT.replace('units = "m"', '[body]\nunits = "m"') + "[response]\nfriction = 0.5\n"
+REFUSAL = "This analysis does not support restraints. Remove [[restraint]]."
+
+
+@pytest.mark.parametrize("options", [(), ("--recommend",), ("--details",)])
+def test_restitution_is_that_of_the_body_without_restraints(run, file, options):
+    """A restraint gives no impulse at an impact; a sentence states that."""
+    code, out, err = run("restitution", file(PIER, "pier.toml"), *options)
+    assert (code, err) == (0, "")
+    note, _, results = out.partition("\n")
+    assert note.endswith("pier.toml: restraints give no impulse at an impact; the coefficients are of the body without "
+                         "restraints.")  # fmt: skip
+    assert results == run("restitution", file(BLOCK, "block.toml"), *options)[1]
+
+
+def test_json_of_restitution_contains_results_only(run, file):
+    code, out, err = run("restitution", file(PIER, "pier.toml"), "--json")
+    assert code == 0
+    assert "restraints give no impulse" in err
+    assert json.loads(out) == json.loads(run("restitution", file(BLOCK, "block.toml"), "--json")[1])
+
+
+@pytest.mark.parametrize("text", [PIER, DOCUMENT])
+@pytest.mark.parametrize("options", [(), ("--json",), ("--details",)])
+def test_equilibria_refuses_restraints(run, file, text, options):
+    code, out, err = run("equilibria", file(text, "pier.toml"), *options)
+    assert code != 0
+    assert REFUSAL in err
+    assert "Traceback" not in out + err
+
+
+def test_a_3d_picture_refuses_restraints(run, file, tmp_path):
+    code, _, err = run("restitution", file(PIER, "pier.toml"), "--output", tmp_path / "pier.glb")
+    assert code != 0
+    assert REFUSAL in err
