@@ -127,6 +127,10 @@ _LIMITS = (
         "model, including the scatter between bodies."
     ),
     Message("Approximate sizes are sampled for every motion, uniform within their intervals."),
+    Message(
+        "The slope of the floor, the horizontal position of the centre of mass and the model error are not sampled. "
+        "`rocking predict` samples them, for one object; its probability of uplift can be much larger."
+    ),
     Message("Impacts of neighbouring objects, loosening, and damage without overturning are not assessed."),
 )
 
