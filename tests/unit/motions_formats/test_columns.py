@@ -45,6 +45,53 @@ def test_four_columns(gap: str) -> None:
     assert record.header == "% t a b c"
 
 
+def _oscillating(columns: int, cycles: float = 8.0) -> str:
+    """Return lines of accelerations that change their sign twice per cycle, with two other columns of other sizes."""
+    wave = np.sin(2.0 * np.pi * cycles * np.arange(0.5, 200.0) / 200.0)
+    return "\n".join(" ".join(f"{size * value:.6f}" for size in range(1, columns + 1)) for value in wave)
+
+
+@pytest.mark.parametrize("columns", [2, 3])
+def test_accelerations_without_times(columns: int) -> None:
+    """Two or three columns whose first one oscillates are x, y and z, with a note; a time step is still required."""
+    source = _source(_oscillating(columns))
+    assert COLUMNS.recognises(source)
+    record = COLUMNS.read(source, "cm/s2", 0.005)
+    assert [part.name for part in record.components] == list("xyz"[:columns])
+    assert {part.time_step for part in record.components} == {0.005}
+    for size, part in enumerate(record.components, 1):
+        assert part.peak == pytest.approx(size, rel=0.01)  # a sample may miss the peak by 1 %
+    assert [part.direction for part in record.components][2:] == ["up"] * (columns - 2)
+    (doubt,) = source.doubts
+    assert "is not a time" in doubt
+    with pytest.raises(RecordError, match="add time_step="):
+        COLUMNS.read(_source(_oscillating(columns)), "cm/s2")
+
+
+def test_first_column_that_may_be_a_time() -> None:
+    """A first column with few changes of sign, four columns, and rising times are never read as accelerations."""
+    remedy = "the first column is read as time; if all columns are accelerations, add a header line"
+    swapped = "-0.02 1\n0.01 2\n-0.01 1\n0.02 3\n0.03 2"  # two lines of times from -0.02 s are misplaced
+    uneven = "0.00 1.0\n0.01 2.0\n0.03 1.0\n0.04 1.0\n"
+    for text in (_oscillating(3, cycles=3.0), _oscillating(4), swapped, uneven):
+        source = _source(text)
+        with pytest.raises(RecordError, match=remedy):
+            COLUMNS.read(source, "g", 0.005)
+        assert not source.doubts
+    with pytest.raises(RecordError, match=r"states a time step of 0.01 s, not 0.005 s; .*add a header line"):
+        COLUMNS.read(_source("0.00 1\n0.01 2\n0.02 1\n0.03 2\n0.04 1\n0.05 2"), "g", 0.005)
+    with pytest.raises(RecordError, match="not evenly spaced") as refusal:  # the first column has a name
+        COLUMNS.read(_source(f"time [s] acc [g]\n{uneven}"), "g")
+    assert "header line" not in str(refusal.value)
+    # times before zero
+    times = "\n".join(f"{0.01 * step:.2f} {(-1) ** step}" for step in range(-20, 20))
+    record = COLUMNS.read(_source(times), "g", 0.01)
+    assert [part.name for part in record.components] == ["column 2"]
+    # the remedy of the error
+    four = COLUMNS.read(_source("# A [g], B [g], C [g], D [g]\n" + _oscillating(4)), None, 0.005)
+    assert [part.name for part in four.components] == list("ABCD")
+
+
 @pytest.mark.parametrize("step", [0.005, 0.01, 0.02, 1.0 / 256.0, 1.0 / 300.0])
 @pytest.mark.parametrize("digits", [4, 6])
 def test_times_uniform_to_their_digits(step: float, digits: int) -> None:

@@ -2,6 +2,8 @@
 
 import math
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import ClassVar
 
 import numpy as np
@@ -26,6 +28,12 @@ from rocking.motions.formats.record import Component, Record, RecordFormat, Sour
 
 SKIP = "omit N lines above the numbers with skip=N"
 _MOST_COLUMNS = 4
+_AXES = "xyz"
+_FEWEST_SIGN_CHANGES = 10  # of accelerations; times change their sign once, and a few times if lines are misplaced
+_ALL_ACCELERATIONS = (
+    "the first column is read as time; if all columns are accelerations, add a header line "
+    "`# NS [cm/s2], EW [cm/s2], UD [cm/s2]`"
+)
 _LOOK = 5
 _LONGEST_HEADER = 100
 
@@ -33,8 +41,9 @@ _LONGEST_HEADER = 100
 class Columns(RecordFormat):
     """Plain columns of text, for files of no other format.
 
-    Without names, a line contains one acceleration, or a time and one to three accelerations. Names and numbers are
-    separated by blanks, tabs, commas or semicolons. Lines that begin with ``#`` or ``%`` are comments.
+    Without names, a line contains one acceleration, or a time and one to three accelerations. If the first of two or
+    three columns changes its sign repeatedly, all columns are accelerations in the order x, y, z, with a warning. Names
+    and numbers are separated by blanks, tabs, commas or semicolons. Lines that begin with ``#`` or ``%`` are comments.
 
     One line of names is allowed above the numbers: ``time [s], NS [g], EW [g]``, with the unit of a column in brackets
     or parentheses. Allowed units are the keys of `rocking.conventions.ACCELERATION_UNITS`, m/s^2, m/s/s and Gal;
@@ -52,7 +61,7 @@ class Columns(RecordFormat):
     """
 
     name: ClassVar[str] = "columns"
-    title: ClassVar[str] = "Columns of numbers: a, or t a, or t a1 a2 a3, or under a line of names"
+    title: ClassVar[str] = "Columns of numbers: a, or t a, or t a1 a2 a3, or x y z, or under a line of names"
     suffixes: ClassVar[tuple[str, ...]] = (".txt", ".dat", ".csv")
     unit_is_free: ClassVar[bool] = True
     states_unit: ClassVar[bool] = False
@@ -115,12 +124,15 @@ class Columns(RecordFormat):
             values = text.numbers()
         if text.preamble and names is None:
             _check_first(source, text, values)
+        if names is None:
+            chosen = _without_time(source, chosen, values)
         chosen = chosen.with_one_time(source, values)
         known_step = time_step if stated.step is None else step_between_samples(source, stated.step, time_step)
         step, metadata = known_step, {}
         if chosen.time is not None:
             times, index = values[:, chosen.time.index], chosen.time.index
-            step = step_of_times(source, times, text.column(index), known_step)
+            with _naming_first_column(is_named=names is not None):
+                step = step_of_times(source, times, text.column(index), known_step)
             metadata = {"first time": f"{times[0]:g} s"}
         step = step_between_samples(source, None, step)
         if stated.count is not None:
@@ -237,6 +249,35 @@ def _by_position(source: Source, text: ColumnText) -> NamedColumns:
         return NamedColumns(None, (ColumnName(0, "", "acceleration"),), ())
     named = [ColumnName(index, "", f"column {index + 1}") for index in range(len(cells))]
     return NamedColumns(named[0], tuple(named[1:]), ())
+
+
+def _without_time(source: Source, chosen: NamedColumns, values: FloatArray) -> NamedColumns:
+    """Return two or three unnamed columns as accelerations if the first one repeatedly changes its sign."""
+    count = values.shape[1]
+    if chosen.time is None or count > len(_AXES):
+        return chosen
+    signs = np.sign(values[:, 0])
+    changes = int(np.count_nonzero(np.diff(signs[signs != 0.0])))
+    if changes < _FEWEST_SIGN_CHANGES:
+        return chosen
+    axes = _AXES[:count]
+    source.doubt(
+        None,
+        f"the first column changes its sign {changes} times and is not a time; the columns are read as the "
+        f"accelerations {', '.join(axes)}" + (" (z is upward)" if "z" in axes else ""),
+    )
+    return NamedColumns(None, tuple(ColumnName(index, "", axis) for index, axis in enumerate(axes)), ())
+
+
+@contextmanager
+def _naming_first_column(*, is_named: bool) -> Iterator[None]:
+    """Add the remedy for columns of accelerations to errors about times without a name."""
+    try:
+        yield
+    except RecordError as error:
+        if not is_named:
+            error.add_hint(_ALL_ACCELERATIONS)
+        raise
 
 
 def _row_by_row(source: Source, values: FloatArray) -> tuple[NamedColumns, FloatArray]:
