@@ -53,7 +53,10 @@ _AT_ENDS_OF_ERROR = (
     "The probability of overturning is {low} with {lower:.3g} times the computed uplift acceleration and {high} with "
     "{higher:.3g} times."
 )
-_NOT_SAMPLED = "The probability does not include the uncertainty of inputs that were not sampled: {inputs}."
+_NOT_INCLUDED = (
+    "The probability does not include how often such motions occur, damage to the body, and impacts of other objects."
+)
+_ONE_VALUE = "Inputs with one stated value, without uncertainty: {inputs}."
 
 
 @dataclass(frozen=True, eq=False)
@@ -231,11 +234,12 @@ class Prediction(Exported):
         if self.directions:
             range_of_quarters = {"low": percent(min(self.directions)), "high": percent(max(self.directions))}
             sentences.append(Message(_DIRECTIONS, range_of_quarters))
-        if self.fixed:
-            listed, *others = map(input_label, self.fixed)
+        sentences.append(Message(_NOT_INCLUDED))
+        if stated := [input_label(name) for name in self.fixed if name in self.inputs]:
+            listed, *others = stated
             for other in others:
                 listed = Message("{first}, {second}", {"first": listed, "second": other})
-            sentences.append(Message(_NOT_SAMPLED, {"inputs": listed}))
+            sentences.append(Message(_ONE_VALUE, {"inputs": listed}))
         if MODEL_ERROR in self.inputs and MODEL_ERROR not in self.fixed:
             sentences.append(Message(_MODEL_ERROR, {"factors": self.inputs[MODEL_ERROR]}))
         sentences += [self._sentence(event) for event in ("uplift", "sliding")]

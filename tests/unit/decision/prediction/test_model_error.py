@@ -263,7 +263,7 @@ def test_model_error_in_plain_words():
     """Sentences have the factors or the missing model error as text, and no name of a key."""
     pulses = [rk.pulses.sine(amplitude, 0.8) for amplitude in (3.0, 3.4)]
     sampled = "The samples contain the error of the model: uplift acceleration times 0.8"
-    missing = "inputs that were not sampled: model error"
+    missing = "without uncertainty: model error"
     for stated in (None, "off"):
         shown = str(rk.predict(rk.Block(width=0.5, height=2.0), pulses, model_error=stated, count=32))
         assert (sampled in shown, missing in shown) == (stated is None, stated == "off")

@@ -91,10 +91,13 @@ def test_the_headline_names_its_condition():
     x = rk.pulses.sine(3.0, 0.8).sampled(0.01)
     prediction = predict(rk.Block(width=0.5, height=2.0), {"x": x, "y": x.scaled(0.1)}, count=32, **OPTIONS)
     assert ", for the sampled inputs: probability" in prediction.verdict
-    assert any("inputs that were not sampled: placement, density" in sentence for sentence in prediction.sentences)
+    assert any(sentence.startswith("The probability does not include how often") for sentence in prediction.sentences)
     assert any(sentence.startswith("The azimuth was sampled") for sentence in prediction.sentences)
     stated = predict(rk.Block(width=0.5, height=2.0), {"x": x, "y": x}, azimuth=0.1, count=4, **OPTIONS)
     assert not any(sentence.startswith("The azimuth was sampled") for sentence in stated.sentences)
+    one_value = "Inputs with one stated value, without uncertainty: "
+    assert next(text for text in stated.sentences if one_value in text).endswith("azimuth.")
+    assert not any("azimuth" in text for text in prediction.sentences if one_value in text)
 
 
 @pytest.mark.verifies("computed anew", "bodies that are sampled again", within="0")
