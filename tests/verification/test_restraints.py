@@ -488,12 +488,12 @@ def test_gap_hook_and_buffer():
     """A hook acts beyond its gap in tension only, a buffer in compression only; the pushover shows both."""
     position = {"ground": (-2.0, 6.0), "point": (0.0, 6.0), "stiffness": 1e6, "gap": 0.05}
     hook, buffer = (
-        rk.pushover(rk.Restrained(WALL, rk.Spring(action=a, **position)), [0.02, -0.02, 0.005])
+        rk.pushover(rk.Restrained(WALL, rk.Spring(action=a, **position)), [0.02, 0.0, 0.0, -0.02, 0.0, 0.0, 0.005])
         for a in ("tension", "compression")
     )
     e = hook.elongation[:, 0]
-    assert hook.force[:, 0] == pytest.approx([1e6 * (e[0] - 0.05), 0.0, 0.0])
-    assert buffer.force[:, 0] == pytest.approx([0.0, 1e6 * (e[1] + 0.05), 0.0])
+    assert hook.force[:, 0] == pytest.approx([1e6 * (e[0] - 0.05), *6 * [0.0]])
+    assert buffer.force[:, 0] == pytest.approx([*3 * [0.0], 1e6 * (e[3] + 0.05), *3 * [0.0]])
 
 
 @pytest.mark.verifies("closed form", "the area of the loop", within="1e-12")

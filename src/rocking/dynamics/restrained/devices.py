@@ -3,9 +3,15 @@
 import math
 from dataclasses import dataclass, field
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from rocking.bodies.restrained import Restrained
+from rocking.conventions import FloatArray
 from rocking.dynamics.restrained.laws import ForceLaw, law_of
 from rocking.dynamics.restrained.levers import Lever
+
+_ROUNDING = 1e-12  # rounding of a dissipated energy over largest force x range of elongation
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +86,18 @@ class Device:
     @property
     def dissipated(self) -> float:
         """Energy dissipated up to now, without the loss by rupture [J]."""
-        return self.start_energy + self.work - self.law.stored(self.elongation) - self.law.lost
+        energy = self.start_energy + self.work - self.law.stored(self.elongation) - self.law.lost
+        extremes = self.largest_force, self.smallest_force, self.largest_elongation, self.smallest_elongation
+        return float(without_rounding(energy, *extremes))
+
+
+def without_rounding(
+    energy: ArrayLike, largest_force: ArrayLike, smallest_force: ArrayLike, longest: ArrayLike, shortest: ArrayLike
+) -> FloatArray:
+    """Return dissipated energies, with 0 for a value below the rounding of the work [J]."""
+    force = np.maximum(np.abs(largest_force), np.abs(smallest_force))
+    rounding = _ROUNDING * np.asarray(force) * np.subtract(longest, shortest)
+    return np.where(np.abs(energy) <= rounding, 0.0, energy)
 
 
 def devices_of(body: Restrained, *, linear: bool) -> list[Device]:

@@ -12,7 +12,7 @@ from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane.equations import Event, EventKind
-from rocking.dynamics.restrained.devices import Device, RestraintEvent, devices_of
+from rocking.dynamics.restrained.devices import Device, RestraintEvent, devices_of, without_rounding
 from rocking.dynamics.restrained.laws import Phase
 from rocking.dynamics.restrained.reference import RestrainedReference, RestrainedTrajectory
 from rocking.dynamics.restrained.settings import RestrainedSettings
@@ -154,6 +154,8 @@ def run_rows(
         ])  # fmt: skip
         if progress is not None:
             progress(piece.stop - first)
+    extremes = (restraints[name] for name in RESTRAINT_RESULTS[:4])
+    restraints["dissipated_energy"] = without_rounding(restraints["dissipated_energy"], *extremes)
     columns = _COMPILED.columns_by_name(floats, integers)
     return FAST, {name: columns[name].astype(dtype) for name, dtype in RESULTS.items()}, restraints
 

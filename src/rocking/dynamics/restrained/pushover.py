@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from rocking import checks, conventions
 from rocking.answers import Answer, AnswerRows
 from rocking.bodies.restrained import Restrained
-from rocking.conventions import FloatArray
+from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.restrained.devices import Device, devices_of
 from rocking.errors import InvalidValueError
 
@@ -26,7 +27,8 @@ class Pushover:
     body : Restrained
         The body with its restraints.
     rotation : ndarray
-        Path of the rotation theta [rad].
+        Path of the rotation theta [rad]. If the given path changes the foot, the upright position occurs twice: with
+        the values about the previous foot, and with the values about the next foot.
     restoring_moment : ndarray
         Moment about the foot in contact against a positive rotation [N m].
     balancing_acceleration : ndarray
@@ -48,6 +50,15 @@ class Pushover:
     restraint_work: FloatArray
     dissipated: FloatArray
 
+    def __repr__(self) -> str:
+        largest = int(np.argmax(np.abs(self.restoring_moment)))
+        angles = np.degrees([self.rotation.min(), self.rotation.max()])
+        return (
+            f"<Pushover: rotation {angles[0]:.4g} to {angles[1]:.4g} deg, largest restoring moment "
+            f"{self.restoring_moment[largest]:.4g} N m at {math.degrees(self.rotation[largest]):.4g} deg, "
+            f"{self.dissipated.sum():.4g} J dissipated>"
+        )
+
     def answer(self) -> Answer:
         """Return the results of the pushover.
 
@@ -67,17 +78,32 @@ class Pushover:
             }),
         })  # fmt: skip
 
-    def plot(self) -> "Figure":
-        """Draw the moment, and the force of every restraint, over the rotation.
+    def plot(self, path: str | Path | None = None) -> "Figure":
+        """Draw the moment over the rotation, and the force of every restraint over its elongation.
+
+        Parameters
+        ----------
+        path : str or Path, optional
+            File for the picture: .png, .svg or .pdf.
 
         Returns
         -------
         matplotlib.figure.Figure
             The picture.
-        """
-        from rocking.plots import pushover_picture
 
-        return pushover_picture(self)
+        Raises
+        ------
+        MissingExtraError
+            If matplotlib is not installed.
+        RockingError
+            If the path has another extension.
+        """
+        from rocking.plots import pushover_picture, write
+
+        figure = pushover_picture(self)
+        if path is not None:
+            write(figure, path)
+        return figure
 
 
 def pushover(
@@ -91,7 +117,8 @@ def pushover(
         The body with its restraints.
     rotation : array_like
         Path of the rotation theta from the upright body, for example up, back and up again [rad]. The path is monotonic
-        between its points. When the rotation changes its sign, the path includes the upright position.
+        between its points. An upright body at the start rests on the foot of the first rotation. If the path changes
+        the foot, the result contains the upright position twice, with the moments about both feet.
     gravity : float
         Acceleration of gravity [m/s2].
     linear : bool
@@ -113,23 +140,24 @@ def pushover(
     >>> import rocking as rk
     >>> wall = rk.Restrained(rk.Block(width=1.0, height=6.0, mass=4000.0), rk.Tendon(x=0.5, stiffness=500e3))
     >>> curve = rk.pushover(wall, np.linspace(0.0, 0.05, 6))
-    >>> bool(np.all(np.diff(curve.restoring_moment[1:]) > 0.0))  # the tendon exceeds the decrease by gravity
+    >>> bool(np.all(np.diff(curve.restoring_moment) > 0.0))  # the tendon exceeds the decrease by gravity
     True
+    >>> rk.pushover(wall, [0.05, -0.05]).rotation.tolist()
+    [0.05, 0.0, 0.0, -0.05]
     """
     checks.of_kind("restrained", restrained, Restrained, "Restrained(body, restraints)")
     path = np.atleast_1d(checks.real_array("rotation", rotation, "rad"))
-    if path.ndim != 1 or not np.all(np.abs(path) < 0.5 * math.pi):
+    if path.ndim != 1 or not path.size or not np.all(np.abs(path) < 0.5 * math.pi):
         raise InvalidValueError(parameter="rotation", allowed="a row within a quarter turn [rad]", value=path.shape)
     devices, body = devices_of(restrained, linear=linear), restrained.body
-    shape = (path.size, len(devices))
-    moment, acceleration = np.zeros(path.size), np.zeros(path.size)
+    angles, sides = _with_upright(path)
+    shape = (angles.size, len(devices))
+    moment, acceleration = np.zeros(angles.size), np.zeros(angles.size)
     elongation, force, work = np.zeros(shape), np.zeros(shape), np.zeros(shape)
-    before = 0.0
-    for k, angle in enumerate(path.tolist()):
-        if before * angle < 0.0:
-            _drive(devices, 1 if before > 0.0 else -1, 0.0)
-        side = 1 if angle > 0.0 or (angle == 0.0 and before > 0.0) else -1
+    for k, (angle, side) in enumerate(zip(angles.tolist(), sides.tolist(), strict=True)):
         _drive(devices, side, angle)
+        if not angle and (k == 0 or sides[k - 1] != side):
+            _lift(devices, side)
         half = body.side("right" if side > 0 else "left", gravity)
         to_top = side * half.slenderness_angle - angle
         sine, cosine = (to_top, 1.0) if linear else (math.sin(to_top), math.cos(to_top))
@@ -138,9 +166,36 @@ def pushover(
         held = sum(f * device.levers[side].slope(angle) for f, device in zip(force[k], devices, strict=True))
         moment[k] = half.mass * gravity * half.semi_diagonal * sine + held  # Eq. 355
         acceleration[k] = -moment[k] / (half.mass * half.semi_diagonal * cosine)
-        before = angle
     dissipated = np.array([device.dissipated for device in devices])
-    return Pushover(restrained, path, moment, acceleration, elongation, force, work, dissipated)
+    return Pushover(restrained, angles, moment, acceleration, elongation, force, work, dissipated)
+
+
+def _with_upright(path: FloatArray) -> tuple[FloatArray, IntArray]:
+    """Return the path with the upright position before and after each change of the foot, and the side of each point.
+
+    >>> [values.tolist() for values in _with_upright(np.array([0.0, 0.1, 0.0, -0.1]))]
+    [[0.0, 0.1, 0.0, 0.0, -0.1], [1, 1, 1, -1, -1]]
+    """
+    side = int(next((np.sign(angle) for angle in path if angle), 1))
+    points: list[tuple[float, int]] = []
+    for angle in path.tolist():
+        if angle * side < 0.0:
+            if points[-1][0]:
+                points.append((0.0, side))
+            elif not points[-2][0]:  # the path contains the upright position twice
+                points.pop()
+            side = -side
+            points.append((0.0, side))
+        points.append((angle, side))
+    angles, sides = zip(*points, strict=True)
+    return np.array(angles), np.array(sides)
+
+
+def _lift(devices: list[Device], side: int) -> None:
+    """Choose the phases of all restraints for uplift about a foot."""
+    for device in devices:
+        if slope := side * device.levers[side].at_rest:
+            device.law.settle(device.elongation, 1 if slope > 0.0 else -1)
 
 
 def _drive(devices: list[Device], side: int, angle: float) -> None:
