@@ -8,18 +8,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rocking.answers import Answer, AnswerRows
-from rocking.conventions import FloatArray, percent
+from rocking.bodies import Body
+from rocking.conventions import DEFAULT_RESTITUTION, FloatArray, percent
 from rocking.decision.prediction.likelihood import likelihood, scale_words
 from rocking.decision.prediction.model_error import MODEL_ERROR, evidence
 from rocking.exported import Exported
 from rocking.messages import Message, listed
 from rocking.motions.summary import MotionSummary, condition
 from rocking.quantities import with_units
+from rocking.restitution.headline import headline
 from rocking.statistics.shares import VarianceShare
 from rocking.version import SOFTWARE
 
 if TYPE_CHECKING:
-    from rocking.bodies import Body, Solid
+    from rocking.bodies import Solid
     from rocking.tables import Table
 
 _LIKELY = {
@@ -210,6 +212,13 @@ class Prediction(Exported):
         return evidence(self.chances["overturning"].value)
 
     @property
+    def headline(self) -> str:
+        """Restitution model of the probabilities and the reason for it, as a sentence."""
+        is_default = "restitution" in self.assumptions
+        label = DEFAULT_RESTITUTION if is_default else self.inputs["restitution"]
+        return headline(label, in_space=not isinstance(self.body, Body))
+
+    @property
     def decides(self) -> str:
         """Reason for missing contributions to the variance; empty if there are contributions."""
         if any(share.total for share in self.contributions.values()):
@@ -253,6 +262,7 @@ class Prediction(Exported):
                 first = Message("{first} and {second}", {"first": first, "second": other})
             facts = {"count": self.count // 4, "total": self.count, "probabilities": first}
             sentences.append(Message(_COMPARED, facts))
+        sentences.append(self.headline)
         ranked = sorted(self.ends.items(), key=lambda pair: -abs(pair[1].probability_high - pair[1].probability_low))
         for name, item in ranked[:2]:
             if item.probability_low != item.probability_high:
@@ -291,8 +301,8 @@ class Prediction(Exported):
             Values by name; NaN without a value.
         """
         pairs = self.outcome_pairs
-        plain = ("verdict", "evidence", "condition", "sliding_beyond", "inputs", "assumed", "not_sampled", "repairs",
-                 "decides", "count", "histories", "failed", "seed", "gravity")  # fmt: skip
+        plain = ("verdict", "evidence", "headline", "condition", "sliding_beyond", "inputs", "assumed", "not_sampled",
+                 "repairs", "decides", "count", "histories", "failed", "seed", "gravity")  # fmt: skip
         return Answer({
             **{name: getattr(self, name) for name in plain},
             "sentences": list(self.sentences),
