@@ -166,6 +166,18 @@ def test_grazing_where_impacts_disappear(case, state):
     assert (first.slowest > 1e-3, last.slowest < 1e-6, last.trough) == (True, True, math.inf)
 
 
+@pytest.mark.verifies("behaviour")
+def test_a_branch_ends_where_its_orbit_overturns():
+    """A cube rocks up to a rotation of 90 degrees, which is overturning; the end of the branch is no bifurcation."""
+    orbit = symmetric_orbit(system_of(1, 6.0, 5, "housner"))
+    branch = continue_orbit(orbit, ANYTHING, step=0.05)
+    assert branch.bifurcations == []
+    last = branch.orbits[-1]
+    assert last.peak * last.system.alpha == pytest.approx(math.pi / 2.0, rel=2e-3)  # seen at the end of a step
+    assert last.determinant == pytest.approx(0.25**2, rel=1e-9)
+    assert last.slowest > 1.0
+
+
 @pytest.mark.verifies("closed form", "the symmetric orbit of slender bodies", within="1e-10")
 @pytest.mark.parametrize(
     ("frequency", "restitution", "fold"),

@@ -186,7 +186,8 @@ class _Curve:
         raise self._error("the continuation finds no orbit near {name} {limit:.9g}", guess)
 
     def orbit(self, point: FloatArray) -> PeriodicOrbit:
-        return orbit_at(self.system(point), point[:2], self.impacts, self.halves)
+        flight = self._closure(point, "")[1]
+        return orbit_at(self.system(point), point[:2], self.impacts, self.halves, flight)
 
 
 @dataclass(frozen=True)
@@ -259,6 +260,7 @@ def _followed(curve: _Curve, point: FloatArray, tangent: FloatArray, course: _Co
             ahead = curve.tangent(following, tangent)
             if ahead @ tangent < 0.97:
                 raise OrbitNotFoundError("the step of the continuation is too long")
+            orbits.append(curve.orbit(following))
         except (OrbitNotFoundError, np.linalg.LinAlgError):
             length *= 0.5
             if length < _SHORTEST:
@@ -267,7 +269,6 @@ def _followed(curve: _Curve, point: FloatArray, tangent: FloatArray, course: _Co
                 bifurcations += [] if curve.test else _grazings(curve.parameters[0], orbits)
                 break
             continue
-        orbits.append(curve.orbit(following))
         located = [
             bifurcation
             for name in (() if curve.test else ("fold", "flip"))

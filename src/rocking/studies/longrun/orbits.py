@@ -7,7 +7,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError, RockingError
-from rocking.studies.longrun.system import IMPACT, HarmonicRocking, over_impacts
+from rocking.studies.longrun.system import IMPACT, HarmonicRocking, ImpactFlights, over_impacts
 from rocking.studies.longrun.thresholds import slender_conditions, slender_thresholds
 
 ComplexArray = np.ndarray[tuple[int, ...], np.dtype[np.complex128]]
@@ -135,7 +135,8 @@ def find_orbit(
         residual = np.array([flight.phase[0] - state[0] - halves * math.pi, flight.speed[0] - state[1]])
         step = np.linalg.solve(flight.jacobian[0] - np.eye(2), -residual)
         if np.max(np.abs(residual)) < TOLERANCE and np.max(np.abs(step)) < 1e-9:
-            return orbit_at(system, state + step, impacts, halves)
+            state = state + step
+            return orbit_at(system, state, impacts, halves, over_impacts(system, state[0], state[1], impacts))
         step /= max(1.0, abs(step[0]) / 0.3, abs(step[1]) / (0.3 * abs(state[1])))
         state = state + step
     raise OrbitNotFoundError(
@@ -144,9 +145,10 @@ def find_orbit(
     )  # fmt: skip
 
 
-def orbit_at(system: HarmonicRocking, state: FloatArray, impacts: int, halves: int) -> PeriodicOrbit:
-    """Return the orbit through a state that closes."""
-    flight = over_impacts(system, state[0], state[1], impacts)
+def orbit_at(
+    system: HarmonicRocking, state: FloatArray, impacts: int, halves: int, flight: ImpactFlights
+) -> PeriodicOrbit:
+    """Return the orbit through a state that closes, from its flight over the impacts."""
     return PeriodicOrbit(
         system, float(state[0] % (2.0 * math.pi)), float(state[1]), impacts, halves, flight.jacobian[0],
         float(flight.peak[0]), float(flight.trough[0]),
