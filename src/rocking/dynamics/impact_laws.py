@@ -59,6 +59,12 @@ class ImpactLaw:
         factors = getattr(self, "factors", None)
         return 1.0 if factors is None else float(factors.max())
 
+    @property
+    def smallest(self) -> float:
+        """Smallest possible factor; 0 for a law without a table [-]."""
+        factors = getattr(self, "factors", None)
+        return 0.0 if factors is None else float(factors.min())
+
     def factor(self, speed: float, stream: int, impact: int) -> float:
         """Return the factor on the coefficient of restitution for one impact.
 

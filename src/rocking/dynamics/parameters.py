@@ -108,6 +108,24 @@ class RockingParameters:
             return side.coefficient * distribution.quantile(side.share, _foot(sign))
         return side.coefficient * law.largest
 
+    def smallest(self, sign: float) -> float:
+        """Return the smallest coefficient of restitution that the impact law gives on a side.
+
+        Parameters
+        ----------
+        sign : float
+            Above zero for the right, below for the left.
+
+        Returns
+        -------
+        float
+            Coefficient; 0 for a user-defined law without a table [-].
+        """
+        side, law = self.side(sign), self.law
+        if isinstance(law, DrawnRestitution):
+            return side.coefficient * law.quantile(0.0, _foot(sign))
+        return side.coefficient * law.smallest
+
     def coefficient(self, sign: float, speed: float, stream: int, impact: int) -> float:
         """Return the coefficient of an impact.
 

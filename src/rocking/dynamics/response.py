@@ -610,8 +610,8 @@ def start_within(parameters: RockingParameters, rotation: Any, angular_velocity:
 
 
 def is_lossless(parameters: RockingParameters) -> bool:
-    """Return True if impacts lose no energy, so that the body never comes to rest."""
-    return parameters.left.coefficient * parameters.right.coefficient >= 1.0
+    """Return True if no impact can lose energy, so that the body never comes to rest."""
+    return parameters.smallest(-1.0) * parameters.smallest(1.0) >= 1.0
 
 
 def _extended(computed: Any, length: float, trajectory: Any, segments: Segments) -> tuple[Any, Segments]:

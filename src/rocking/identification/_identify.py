@@ -14,6 +14,7 @@ from rocking.identification.association import fit_times
 from rocking.identification.design import Design, designs
 from rocking.identification.forced import identify_forced
 from rocking.identification.measurement import ImpactTimes, RotationSeries
+from rocking.identification.next_impacts import NextImpacts
 from rocking.identification.posterior import LEVEL, Knowledge, Posterior, interval_of_nodes
 from rocking.identification.results import (
     Identification,
@@ -22,7 +23,7 @@ from rocking.identification.results import (
     compared,
     estimated,
     impulses,
-    next_impact,
+    mean_quantiles,
 )
 from rocking.identification.series import fit_series
 from rocking.identification.state_space import DAMPING, FREQUENCY, HALF, MEAN, SHARED, SLENDERNESS, TILT, TREND
@@ -191,7 +192,7 @@ def _refused(measurement: ImpactTimes | RotationSeries, reason: str) -> Identifi
     return Identification(
         measurement.source, (reason,), measurement.doubts, no_estimate, sides, no_estimate, math.nan, no_estimate,
         no_estimate, None, None, (),
-        np.zeros(0), no_estimate, 0.0, math.nan, math.nan, False, {}, (), (), {}, measurement,
+        np.zeros(0), no_estimate, 0.0, math.nan, math.nan, False, {}, (), (), None, measurement,
     )  # fmt: skip
 
 
@@ -251,9 +252,9 @@ def _result(
         noise=_grid_interval(posterior, posterior.noise), independent=independent, p_value=p_value, advantage=advantage,
         converged=posterior.converged, impulse=impulses(body, coefficients) if body is not None and not refused else {},
         models=compared(body, r) if body is not None and not refused else (), designs=experiments,
-        measurement=measurement, quantiles=next_impact(mean, 0.0),
+        measurement=measurement, quantiles=mean_quantiles(mean),
         _common=posterior.explained(MEAN, (FREQUENCY, SLENDERNESS)),
-        _next={foot: next_impact(mixture, posterior.scatter) for foot, mixture in by_side.items()},
+        _next=NextImpacts.of(mean, posterior.shared((HALF, 1.0)), by_side["right"], posterior.scatter, prior.body),
     )  # fmt: skip
 
 

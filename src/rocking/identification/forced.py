@@ -31,6 +31,7 @@ from rocking.identification.forced_model import (
 )
 from rocking.identification.forced_posterior import ForcedPosterior
 from rocking.identification.measurement import ImpactTimes, RotationSeries
+from rocking.identification.next_impacts import NextImpacts
 from rocking.identification.posterior import Knowledge
 from rocking.identification.results import (
     ForcedRocking,
@@ -40,7 +41,7 @@ from rocking.identification.results import (
     compared,
     estimated,
     impulses,
-    next_impact,
+    mean_quantiles,
 )
 from rocking.messages import Message
 from rocking.motions.motion import GroundMotion, checked_motion
@@ -184,9 +185,9 @@ def answer(
         noise=IntervalEstimate(noise_deviation, noise_deviation, noise_deviation),
         independent=float(residuals.size), p_value=math.nan, advantage=advantage, converged=fit.converged,
         impulse={} if refused else impulses(body, coefficients), models=() if refused else compared(body, r),
-        designs=(), _next={foot: next_impact(mixture, posterior.scatter) for foot, mixture in by_side.items()},
+        _next=NextImpacts.of(mean, posterior.shared((HALF, 1.0)), by_side["right"], posterior.scatter, body),
         measurement=series, residual_times=np.tile(series.time[at[order]], len(problem.kinds)),
-        quantiles=next_impact(mean, 0.0), forced=_forced(posterior, friction),
+        designs=(), quantiles=mean_quantiles(mean), forced=_forced(posterior, friction),
         _common=posterior.explained(MEAN, (WIDTH, HEIGHT)),
     )  # fmt: skip
 

@@ -15,6 +15,7 @@ from rocking.errors import InvalidValueError, RockingError
 from rocking.exported import Exported
 from rocking.identification.design import Design
 from rocking.identification.measurement import ImpactTimes, RotationSeries
+from rocking.identification.next_impacts import NextImpacts
 from rocking.identification.posterior import Mixture
 from rocking.messages import Message, listed
 from rocking.quantities import Quantity
@@ -199,8 +200,8 @@ class Identification(Exported):
         Comparison with every restitution model, the closest first; empty without a body.
     designs : tuple of Design
         Experiments with this body, the most accurate first.
-    _next : dict of str to ndarray
-        Quantiles of the coefficient of the next impact, by foot, for `law` [-].
+    _next : NextImpacts or None
+        Distribution of the coefficients of the next impacts, for `law`; None for a refused measurement.
     measurement : ImpactTimes or RotationSeries
         The measurement.
     residual_times : ndarray
@@ -234,7 +235,7 @@ class Identification(Exported):
     impulse: dict[Foot, IntervalEstimate]
     models: tuple[ModelComparison, ...]
     designs: tuple[Design, ...]
-    _next: dict[Foot, FloatArray]
+    _next: NextImpacts | None
     measurement: ImpactTimes | RotationSeries | None = None
     residual_times: FloatArray = field(default_factory=lambda: np.zeros(0))
     quantiles: FloatArray = field(default_factory=lambda: np.zeros(0))
@@ -272,12 +273,17 @@ class Identification(Exported):
     __repr__ = __str__
 
     def law(self, *, seed: int = 0) -> RandomRestitution:
-        """Return the random coefficients of the next impacts, with scatter and uncertainty.
+        """Return a law of the next impacts: one draw of the uncertain coefficients, and the scatter at each impact.
+
+        The coefficients of both feet and the scatter are drawn once per law, jointly from the posterior. Times with an
+        unknown tilt determine the mean of both feet better than the coefficient of each foot. Therefore the draws of
+        both feet are correlated. The coefficient of each impact then scatters about the draw of its foot. All
+        histories of one law have the same draw. Laws with several seeds give the uncertainty of a response.
 
         Parameters
         ----------
         seed : int
-            Random seed.
+            Random seed of the draw and of the scatter.
 
         Returns
         -------
@@ -289,11 +295,11 @@ class Identification(Exported):
         InvalidValueError
             If the measurement was refused.
         """
-        if self.refused:
+        if self.refused or self._next is None:
             raise InvalidValueError(
                 "a refused identification gives no restitution law: {reason}", reason=self.refused[0]
             )
-        return RandomRestitution(self._next, seed)
+        return self._next.law(seed)
 
     def answer(self) -> Answer:
         """Return the result of the measurement for display.
@@ -437,8 +443,7 @@ def compared(body: Body, mean: IntervalEstimate) -> tuple[ModelComparison, ...]:
     return tuple(sorted(comparisons, key=lambda comparison: abs(comparison.bias)))
 
 
-def next_impact(mean: Mixture, scatter: FloatArray | float) -> FloatArray:
-    """Return quantiles of the coefficient of another impact, or of the mean coefficient without scatter."""
-    spread = Mixture(mean.weights, mean.means, np.hypot(mean.deviations, scatter))
+def mean_quantiles(mean: Mixture) -> FloatArray:
+    """Return quantiles of the mean coefficient, from the distribution of its logarithm."""
     levels = (np.arange(65) + 0.5) / 65.0
-    return np.exp(np.minimum(spread.quantiles(*levels), math.log(10.0)))  # Eq. 274
+    return np.exp(np.minimum(mean.quantiles(*levels), math.log(10.0)))

@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 import rocking as rk
+from rocking.dynamics.impact_laws import ImpactLaw, RandomRestitution, SpeedRestitution
+from rocking.studies import SampledRestitution
 
 G = 9.80665
 COMMAND = "simulate --width 0.5 --height 2"
@@ -68,6 +70,50 @@ def test_a_pulse_is_followed_until_the_body_rests(printed, answered, long_record
     short = rk.simulate(rk.Block(width=0.5, height=2.0), rk.pulses.sine(3.2, 0.8), "ked", duration=0.8 + 15.0 / p)
     assert short.still_rocking
     assert len(answered(*PULSE, *KED)["impacts"]) > 2 * short.impacts.size
+
+
+class OwnRestitution(ImpactLaw):
+    """A law without a table."""
+
+    def __init__(self):
+        pass
+
+    def factor(self, speed, stream, impact):
+        return 0.95
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        RandomRestitution.normal(0.95, 1e-9, seed=1),
+        SampledRestitution.of_law(RandomRestitution.normal(0.95, 1e-9, seed=1)),
+        RandomRestitution({"left": [0.95, 0.95], "right": [0.95, 0.95]}, 1),
+        RandomRestitution([1.0, 1.0], 1, times=0.95),
+        SpeedRestitution([0.0, 1.0], [0.95, 0.95]),
+        OwnRestitution(),
+    ],
+)
+def test_a_law_is_followed_until_the_body_rests(law):
+    """A law whose coefficients all are 0.95 gives the impacts and the end of the constant coefficient 0.95."""
+    block, pulse = rk.Block(width=0.1, height=0.4), rk.pulses.sine(amplitude=4.0, period=0.2)
+    constant, varied = (rk.simulate(block, pulse, restitution) for restitution in (0.95, law))
+    assert not varied.still_rocking
+    assert "never comes to rest" not in varied.summary
+    large = constant.impacts["velocity_before"].size // 2
+    assert varied.impacts["time"][:large] == pytest.approx(constant.impacts["time"][:large], abs=1e-5)
+    # the own law runs on the reference engine, which counts impacts down to smaller speeds
+    assert varied.time[-1] == pytest.approx(constant.time[-1], rel=2e-3)
+
+
+@pytest.mark.parametrize(
+    "law", [RandomRestitution([1.0, 1.0], 1), SpeedRestitution([0.0, 1.0], [1.0, 1.0]), {"left": 1.0, "right": 1.0}]
+)
+def test_a_law_without_loss_never_rests(law):
+    """Negative control: if all coefficients of a law are 1, the response ends 15 / p after the pulse and says so."""
+    block, pulse = rk.Block(width=0.1, height=0.4), rk.pulses.sine(amplitude=4.0, period=0.2)
+    response = rk.simulate(block, pulse, law)
+    assert "no impact loses energy, so that the body never comes to rest" in response.unfinished
+    assert response.time[-1] == rk.simulate(block, pulse, 1.0).time[-1]
 
 
 def test_the_first_part_is_as_before():

@@ -79,11 +79,51 @@ def test_what_is_common_to_all_trials_is_of_the_size():
     assert exact._common == 0.0
 
 
-def test_the_law_draws_what_was_measured(found):
-    """A response takes it; its median is that of the side."""
-    law = found[0].law(seed=1)
-    assert law.quantile(0.5, "right") == pytest.approx(found[0].coefficients["right"].value, rel=1e-4)
-    assert rk.free_rocking(BLOCK, rotation=0.1, restitution=law).impacts.size > 3
+def _means(laws):
+    """Return ln of the median coefficient of each foot, of shape (laws, 2)."""
+    return np.log([[law.quantile(0.5, foot) for foot in ("left", "right")] for law in laws])
+
+
+def test_laws_have_the_distribution_of_the_measurement(found):
+    """Over many seeds, a side has its interval and the scatter has its interval."""
+    laws = [found[0].law(seed=seed) for seed in range(400)]
+    right = np.exp(_means(laws)[:, 1])
+    interval = found[0].coefficients["right"]
+    assert np.median(right) == pytest.approx(interval.value, rel=1e-3)
+    # the quantile of 400 draws has a standard error of 0.04 of the width of the interval
+    assert np.quantile(right, [0.025, 0.975]) == pytest.approx([interval.low, interval.high], rel=2e-3)
+    scatters = [np.log(law.quantile(0.8413, "left") / law.quantile(0.5, "left")) for law in laws]
+    # the grid of scatters has steps of 10 to 30 %
+    assert np.median(scatters) == pytest.approx(found[0].scatter.value, rel=0.3)
+    assert rk.free_rocking(BLOCK, rotation=0.1, restitution=laws[0]).impacts.size > 3
+
+
+def test_an_unknown_tilt_does_not_scatter_the_impacts():
+    """The interval of a side is wide, that of the mean is narrow, and the coefficient does not scatter. In a response
+    the impacts of a side have one coefficient; the mean of both sides is that of the measurement."""
+    answer = identify(ImpactTimes(_path(scatter=0.0)[1].times[0], sigma=1e-5), BLOCK, first="left")
+    side = answer.coefficients["left"]
+    assert side.high - side.low > 0.05 > 100.0 * (answer.mean.high - answer.mean.low)
+    impacts = rk.free_rocking(BLOCK, rotation=0.1, restitution=answer.law(seed=2)).impacts
+    for foot in ("left", "right"):
+        coefficients = impacts["coefficient"][impacts["foot"] == foot]
+        assert coefficients.size > 10
+        assert np.log(coefficients).std() < answer.scatter.high
+    drawn = _means([answer.law(seed=seed) for seed in range(100)])
+    assert np.exp(drawn[:, 0]).std() == pytest.approx((side.high - side.low) / 3.92, rel=0.25)  # 3.5 / sqrt(2 * 100)
+    assert np.exp(drawn.mean(axis=1)) == pytest.approx(
+        answer.mean.value, abs=2.0 * (answer.mean.high - answer.mean.low)
+    )
+    # negative control: sides that are drawn independently have another mean
+    independent = np.exp(0.5 * (drawn[:-1, 0] + drawn[1:, 1]))
+    assert np.abs(independent - answer.mean.value).max() > 50.0 * (answer.mean.high - answer.mean.low)
+
+
+def test_a_law_creates_no_energy():
+    """Near r = 1 the interval of a side exceeds 1; the drawn coefficients do not."""
+    answer = identify(ImpactTimes(_path(r=0.998, scatter=0.0)[1].times[0], sigma=1e-6), BLOCK, first="left")
+    assert answer.coefficients["left"].high > 1.0
+    assert np.exp(_means([answer.law(seed=seed) for seed in range(50)])).max() <= 1.0
 
 
 def test_models_impulse_and_designs_stand_beside_it(found):
