@@ -28,7 +28,7 @@ from rocking.decision.prediction.mechanics import (
 from rocking.decision.prediction.model_error import Similarity
 from rocking.decision.prediction.placement import FARTHEST, OFFSET, OFFSET_REASON
 from rocking.dynamics.impact_laws import ConstantRestitution
-from rocking.dynamics.parameters import coefficients_of
+from rocking.dynamics.parameters import UNIMPOSED, coefficients_of
 from rocking.dynamics.plane_frictional.batch import RowsWithContact
 from rocking.dynamics.plane_frictional.settings import ContactSettings
 from rocking.dynamics.rows import Rows
@@ -112,7 +112,7 @@ class SampledInPlane(SampledBodies):
             self.assumed["restitution"] = with_reason(text, MEASURED_REASON)
         elif name == COMPLEMENTARITY:
             text, self._follows, fixed = Message("complementarity only"), False, True
-            self._tables = [np.full(2, np.nan)] * 2
+            self._tables = [np.full(2, UNIMPOSED)] * 2
         elif name or isinstance(stated, RestitutionModel) or (isinstance(stated, Mapping) and set(stated) == set(FEET)):
             pair, text = coefficients_of(stated, self.body)
             self._tables, self._follows, fixed = (
@@ -197,7 +197,8 @@ class SampledInPlane(SampledBodies):
                 before = shifted(self._impact(self._levers[old], self._levers[new], self._height), k)
                 r = r * np.maximum(now, 0.0) / np.maximum(before, 1e-3)
             inertia = self._spread + height[:, None] ** 2 + levers**2
-            coefficients[:, new] = np.clip(r, 0.0, np.sqrt(inertia[:, old] / inertia[:, new]))  # Eq. 29
+            limited = np.clip(r, 0.0, np.sqrt(inertia[:, old] / inertia[:, new]))  # Eq. 29
+            coefficients[:, new] = np.where(r == UNIMPOSED, r, limited)
         return coefficients
 
     def _impact(self, old: Any, new: Any, height: Any) -> ImpactGeometry:

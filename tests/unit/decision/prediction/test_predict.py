@@ -119,6 +119,17 @@ def test_what_is_known_leaves_nothing_to_chance():
     assert [each for each in found.assumed if each.startswith(("friction", "base", "centre", "restitution:"))] == []
 
 
+def test_impacts_by_complementarity_only():
+    """Without a coefficient: the bodies have the peak of a response by complementarity, not that of a coefficient."""
+    drawn = peaks(mechanics(BODY, rk.pulses.sine(5.0, 0.8), restitution="complementarity"))
+    alone, other = (
+        rk.simulate(BODY, rk.pulses.sine(5.0, 0.8), restitution, friction=KNOWN["friction"])
+        for restitution in (None, 0.9)
+    )
+    assert drawn.peak[0] == pytest.approx(abs(alone.peak_rotation), rel=1e-7)
+    assert drawn.peak[0] != pytest.approx(abs(other.peak_rotation), rel=1e-3)
+
+
 @pytest.mark.verifies("behaviour", control="test_the_input_that_decides_has_the_share")
 def test_rare_outcomes_have_no_contributions():
     """With fewer than four samples of the rarer outcome no further history is computed, and the answer says so."""
