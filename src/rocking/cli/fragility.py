@@ -229,7 +229,8 @@ def _check(problem: "StudyProblem", exports: Exports) -> None:
         raise UsageError(
             "a picture accepts at most {limit} --restitution, got {count}", limit=MOST_IN_PICTURE, count=several
         )
-    if "nrml" in exports.names:
-        from rocking.studies.fragility.export import intensity_type
+    from rocking.studies.fragility.export import intensity_type, pelicun_demand
 
-        intensity_type(problem.document.fragility.im)
+    for name, check in (("nrml", intensity_type), ("pelicun", pelicun_demand)):
+        if name in exports.names:
+            check(problem.document.fragility.im)

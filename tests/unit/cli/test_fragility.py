@@ -277,6 +277,23 @@ def test_curves_that_cross_are_shown_as_they_are_exported(run, answered, tmp_pat
         assert reason.rstrip(".") in row["Data Quality and Relevance"]
 
 
+def test_unsupported_measures_are_refused_before_the_computation(run, tmp_path, monkeypatch):
+    """PELICUN over PGV is refused before a motion is simulated; P-58 over PGV is written."""
+    pgv = (*SIZE, *FAMILY, "--im", "pgv", "--levels", "0.2:2:6", "--limit-states", "overturning")
+    assert run(*pgv, "--output", f"p58={tmp_path / 'p58.csv'}")[0] == 0
+    assert (tmp_path / "p58.csv").exists()
+
+    def computed(*_, **__):
+        raise AssertionError("the analysis was computed")
+
+    monkeypatch.setattr("rocking.cli.fragility_answer.FragilityAnswer.of", computed)
+    with pytest.raises(AssertionError, match="was computed"):  # the control
+        run(*pgv, "--output", f"csv={tmp_path / 'c.csv'}")
+    code, _, err = run(*pgv, "--output", f"pelicun={tmp_path / 'p.csv'}", "--output", f"csv={tmp_path / 'c.csv'}")
+    assert code == 2
+    assert "PELICUN requires curves over pga or sa(period) with 5 % damping, got 'pgv'; for other measures" in err
+
+
 def test_curves_that_cross_can_be_refused(run, answered, tmp_path):
     """With refuse each state alone is shown, there is no NRML, and the option that helps is named."""
     refuse = (*SIZE, *FAMILY, *LEVELS, "--crossing-curves", "refuse")

@@ -176,24 +176,29 @@ _PELICUN = "ID", "Incomplete", "Demand-Type", "Demand-Unit", "Demand-Offset", "D
 _LIMIT_STATE = "Family", "Theta_0", "Theta_1", "DamageStateWeights"
 
 
-def _pelicun(model: FragilityModel, crossing_curves: Crossing) -> Table:
-    """Return the damage model of a component for PELICUN 3: one row, accelerations in g."""
+def pelicun_demand(measure: str, support: str = GROUND) -> str:
+    """Return the demand of a measure in PELICUN 3, for motions of a support."""
     # layout, names of demands, and spectral|period are as in NHERI-SimCenter/DamageAndLossModelLibrary, fragility.csv
     # of seismic/power_network (Hazus v5.1), vocabularies.py, and fragility.csv of California RC Bridges 2025
-    spectral = spectral_period(model.im)
-    if model.im != "pga" and (spectral is None or spectral[1] != 0.05):
+    spectral = spectral_period(measure)
+    if measure != "pga" and (spectral is None or spectral[1] != 0.05):
         raise InvalidValueError(
             "PELICUN requires curves over pga or sa(period) with 5 % damping, got {measure!r:.60}",
-            measure=model.im,
+            measure=measure, hint="for other measures, export to FEMA P-58 or OpenQuake (NRML)",
         )  # fmt: skip
-    on_floor = _support(model) != GROUND
+    on_floor = support != GROUND
     if on_floor and spectral is not None:
         raise InvalidValueError(
             "PELICUN requires curves over pga (Peak Floor Acceleration) for motions of {support}, got "
-            "{measure!r:.60}", support=_support(model), measure=model.im,
+            "{measure!r:.60}", support=support, measure=measure,
         )  # fmt: skip
     peak = f"Peak {'Floor' if on_floor else 'Ground'} Acceleration"
-    demand = peak if spectral is None else f"Spectral Acceleration|{spectral[0]!r}"
+    return peak if spectral is None else f"Spectral Acceleration|{spectral[0]!r}"
+
+
+def _pelicun(model: FragilityModel, crossing_curves: Crossing) -> Table:
+    """Return the damage model of a component for PELICUN 3: one row, accelerations in g."""
+    demand = pelicun_demand(model.im, _support(model))
     unit, size = exchange_unit(model.im, model.unit)
     # Demand-Directional is 1, because the curve is for a motion in one direction; with 0, PELICUN uses the larger of
     # two directions times NonDirectionalMultipliers, default 1.2 (pelicun/model/demand_model.py)

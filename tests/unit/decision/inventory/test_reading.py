@@ -155,6 +155,10 @@ def test_bad_value_that_does_not_decide(column, value, words):
         (f"{HEAD},Sockel\n{GOOD},10", "unknown column 'Sockel' resembles a size"),
         (f"{HEAD},length_cm\n{GOOD},10", "unknown column 'length_cm' resembles a size, in addition to width and depth"),
         ("Objekt;Breite cm;Farbe\nx;1;2", "the header contains no depth and no height, only 'Objekt' as name"),
+        (
+            "name,width_cm,height_cm\nvase,20,90",
+            "add a column depth_cm, or map one with map_columns=; if the depth is unknown, copy the width",
+        ),
         (f"{HEAD},gross (kg)\n{GOOD},10", "resembles a size"),
         (f"{HEAD},centre of area\n{GOOD},10", "resembles a size"),
         (f"{HEAD},base\n{GOOD},10", "'base' must state its unit: base_m"),

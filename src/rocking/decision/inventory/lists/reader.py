@@ -44,7 +44,7 @@ from rocking.decision.inventory.lists.sheets import (
 from rocking.decision.inventory.objects import SIZES as SIDES
 from rocking.decision.inventory.objects import InventoryObject, NotAssessed
 from rocking.errors import InvalidValueError, RockingError
-from rocking.messages import Message
+from rocking.messages import Message, Option
 
 _STATING = words_of(WORDS["stating"])
 
@@ -216,9 +216,15 @@ def _no_header(source: str, candidates: Sequence[tuple[LocatedHeader | None, Seq
     )
     if best and len(best.fields) > 1:
         titles = ", ".join(f"{column.title!r:.40} as {column.stem}" for column in best.columns if column)
+        hint = Message(
+            "add a column depth_cm, or map one with {mapping}; if the depth is unknown, copy the width (square base)"
+            if best.missing == ["depth"]
+            else "add the columns, or map columns with {mapping}",
+            {"mapping": Option("inventory.map_columns")},
+        )
         return InvalidValueError(
             "the header contains no {missing}, only {titles}", missing=" and no ".join(best.missing), titles=titles,
-            hint='Map another column, as in map_columns "Maß B=width_cm".',
+            hint=hint,
         ).at(source)  # fmt: skip
     first = next((text_of(cell) for _, rows in candidates for _, row in rows[:1] for cell in row), "")
     return InvalidValueError(
