@@ -265,7 +265,8 @@ class Lanes {
         const Column y = column(c, i);
         const int skip = one.y > 0.0 ? 0 : one.lifts ? 3 : one.v > 0.0 ? 1 : 2;
         if (!(y.c[skip] > 0.0)) return Event::failed;
-        const double zero = y.zero(skip);
+        const bool lands_at_end = ends[i] <= 0.0 && rates[i] < 0.0;  // a zero at the end that rounding hides
+        const double root = y.zero(skip), zero = lands_at_end ? std::min(root, 1.0) : root;
         if (driver.counts_peaks(one)) crest(one, y, zero);
         if (zero > 1.0) {
             move(one, i);

@@ -193,6 +193,21 @@ def test_engines_of_all_processors_agree():
         assert all(np.array_equal(a, b, equal_nan=True) for a, b in zip(tables["avx2"], tables["avx512"], strict=True))
 
 
+@pytest.mark.verifies("closed form", "modulus r of the multipliers of a focus", within="0.002")
+def test_impacts_at_the_ends_of_periods():
+    """A stable orbit that starts at its impact has an impact at the end of each period, up to rounding: no history
+    fails, and both exponents are (omega / pi) ln r."""
+    system = system_of(2.0, 1.2, 2.0, "housner")
+    orbit = symmetric_orbit(system)
+    speeds = orbit.speed * (1.0 + 0.0005 * np.arange(64))
+    starts = start_states(system, np.column_stack([np.full(64, orbit.phase), speeds]))
+    result = lyapunov_exponents(system, starts=starts, settled=100, kept=2900)
+    assert len(result.finite) == 64
+    exact = system.excitation.frequency / math.pi * math.log(0.7)
+    # the first and last directions of the rotating tangent vectors change ln of the growth by up to 2, of 2000
+    assert result.finite == pytest.approx(exact, rel=2e-3)
+
+
 @pytest.mark.verifies("damage")
 def test_bad_input_is_refused():
     """Values out of range name their parameter; orbits of asymmetric bodies have an even number of impacts."""
