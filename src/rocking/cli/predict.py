@@ -16,6 +16,7 @@ from rocking.cli.exports import CSV, NETCDF, REPORTED, Exports
 from rocking.cli.numbers import number_or_name
 from rocking.cli.page import MOST_MODELS, MOST_ROWS, Page, bar, deliver
 from rocking.cli.study import source_lines
+from rocking.conventions import Assumed
 from rocking.decision.prediction.forecast import input_label
 from rocking.decision.prediction.likelihood import scale_words
 from rocking.errors import located
@@ -37,6 +38,7 @@ COUNT, SEED = 20, 1
 EXPORTS = {**REPORTED, "csv": CSV, "netcdf": NETCDF}
 _R = Display(own=closely(coefficient=".3f"))
 _NAMED = ("calibrated", "housner", "ked")  # restitution cases with their own row
+_SHOWN_INPUTS = ("friction", "restitution")  # in the line with the assumptions
 
 
 @options.takes(options.SIZES)
@@ -165,8 +167,13 @@ def _model_cells(rows: list[dict[str, Any]]) -> tuple[str, ...]:
 
 
 def _show_assumed(page: Page, result: "Prediction") -> None:
-    """Write the assumed inputs with their values in one line, and the repairs of a mesh."""
-    assumed = (f"{name} {result.inputs[name]}" for name in result.assumptions if name in result.inputs)
+    """Write the assumptions that matter most in one line, and the repairs of a mesh."""
+    values = ((name, getattr(result.body, name, None), unit) for name, unit in (("density", "kg/m3"), ("depth", "m")))
+    assumed = [f"{name} {value:g} {unit}" for name, value, unit in values if isinstance(value, Assumed)]
+    inputs = [name for name in result.assumptions if name in result.inputs]
+    assumed += [f"{name} {result.inputs[name]}" for name in inputs if name in _SHOWN_INPUTS]
+    if others := len(set(inputs) - set(_SHOWN_INPUTS)):
+        assumed.append(f"{others} other inputs")
     page.line(f"Assumed: {'; '.join(assumed)} (all inputs: --details)")
     page.warn(result.repairs)
 

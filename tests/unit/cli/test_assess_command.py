@@ -25,6 +25,11 @@ def test_a_page(printed):
     page = printed(*BODY, *QUICK, PULSE, "--details")
     assert short.splitlines()[:3] == page.splitlines()[:3]
     assert len(short.splitlines()) <= 24
+    assumed = next(line for line in short.splitlines() if line.startswith("Assumed: "))
+    assert len(assumed) < 200
+    assert "depth 1 m" in printed("--width", "0.6", "--height", "2", *QUICK, PULSE)
+    stated = printed("--width", "0.6", "--height", "2", "--depth", "0.7", *QUICK, PULSE)
+    assert "depth" not in stated.partition("Assumed: ")[2].splitlines()[0]
     assert "--details" in short
     first, second, third = page.splitlines()[:3]
     assert first.startswith("The body overturns under 1 of 1 motion")
