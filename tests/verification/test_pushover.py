@@ -64,6 +64,7 @@ def test_a_change_of_the_foot_is_a_jump_at_the_upright_position(path):
 
 @pytest.mark.verifies("closed form", "moment at uplift", within="1e-12")
 def test_each_foot_of_an_asymmetric_body():
+    """Each foot has its own lever arms of the weight and of the tendon."""
     body = rk.Restrained(SKEW, rk.Tendon(x=0.2, stiffness=1e5, prestress=1e4))
     right = 2000.0 * G * 0.65 + 1e4 * 0.8
     left = 2000.0 * G * 0.35 + 1e4 * 0.2
@@ -84,7 +85,7 @@ def test_a_friction_damper_slips_at_uplift_about_each_foot():
     assert curve.force[:, 0].tolist() == [SLIP, SLIP, -SLIP, SLIP, SLIP]
 
 
-@pytest.mark.verifies("identity", "no dissipation of an elastic tendon", within="exact")
+@pytest.mark.verifies("invariant", "no dissipation of an elastic tendon", within="exact")
 @pytest.mark.parametrize("points", [7, 10, 100, 1001])
 def test_rounding_is_not_dissipation(points):
     """An elastic tendon dissipates 0 J, and a fuse dissipates more than the limit of rounding."""
@@ -120,5 +121,6 @@ def test_text_and_picture(tmp_path):
 @pytest.mark.verifies("behaviour")
 @pytest.mark.parametrize("rotation", [[], [[0.1]], [math.nan], [2.0]])
 def test_paths_that_are_refused(rotation):
+    """A path is a list of rotations below a quarter turn."""
     with pytest.raises(rk.errors.InvalidValueError, match="rotation"):
         rk.pushover(TIED, rotation)
