@@ -35,9 +35,10 @@ _LIFTS_FIRST = (
 _NEVER_LIFTS = "No uplift and no overturning: 0 of {motions}, {models}, both polarities."
 _STANDS = "The body rocks but does not overturn: 0 of {motions}, {models}, both polarities."
 _DEPENDS = (
-    "The body may overturn: under {with_some} of {motions} with some of {models}, under {with_all} with all. The "
-    "result depends on the restitution model."
+    "The result depends on the restitution model: under {with_some} of {motions} the body overturns with at least one "
+    "of {models}, under {with_all} with all of them."
 )
+_DEPENDS_UNDER_ONE = "The result depends on the restitution model: the body overturns with {count} of {models}."
 _MARGINS = {  # keys: (True for a single motion, True if the factor is a margin)
     (True, True): "Margin to overturning: {factor:.3g} times this record ({model}), a {peak} of {acceleration:.3g} g.",
     (False, True): "Margin to overturning: {factor:.3g} times {motion} ({model}), a {peak} of {acceleration:.3g} g.",
@@ -383,6 +384,9 @@ class BodyAssessment:
             return Message(
                 "The body overturns under {count} of {motions} with all of {models}.", {"count": with_all, **facts}
             )
+        if self.overturning_fraction.size == 1:
+            count = sum(self.by_record(margin.overturned)[0] == 1.0 for margin in self.models.values())
+            return Message(_DEPENDS_UNDER_ONE, {"count": int(count), **facts})
         return Message(_DEPENDS, {"with_some": with_some, "with_all": with_all, **facts})
 
     @property
