@@ -3,9 +3,7 @@
 
 #include "lanes.hpp"
 
-namespace rocking {
-namespace ROCKING_ISA {
-namespace longrun {
+namespace rocking::ROCKING_ISA::longrun {
 
 // Histories over complete periods of the first sine. With one sine, time starts from zero in each period.
 template <int V>
@@ -154,6 +152,4 @@ void run(const Flights& work, int vectors, Queue& queue) {
     if (vectors == 3) Lanes<3, Impacts<3>>({work}, queue).run();
 }
 
-}  // namespace longrun
-}  // namespace ROCKING_ISA
-}  // namespace rocking
+}  // namespace rocking::ROCKING_ISA::longrun

@@ -13,9 +13,7 @@
 #include "../sine.hpp"
 #include "kernel.hpp"
 
-namespace rocking {
-namespace ROCKING_ISA {
-namespace longrun {
+namespace rocking::ROCKING_ISA::longrun {
 
 using namespace rocking::longrun;
 
@@ -187,6 +185,4 @@ struct Lane {
     }
 };
 
-}  // namespace longrun
-}  // namespace ROCKING_ISA
-}  // namespace rocking
+}  // namespace rocking::ROCKING_ISA::longrun

@@ -2,9 +2,7 @@
 #pragma once
 #include "lane.hpp"
 
-namespace rocking {
-namespace ROCKING_ISA {
-namespace longrun {
+namespace rocking::ROCKING_ISA::longrun {
 
 #define ROCKING_LANES ROCKING_UNROLL for (int j = 0; j < U; ++j)
 
@@ -290,6 +288,4 @@ class Lanes {
     }
 };
 
-}  // namespace longrun
-}  // namespace ROCKING_ISA
-}  // namespace rocking
+}  // namespace rocking::ROCKING_ISA::longrun
