@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -19,6 +19,8 @@ Selection = Annotated[
     list[str] | None,
     typer.Argument(help="Measurements: published, own, table1, S, M, L, or files (.toml, .csv)."),
 ]
+MEASUREMENT = ("set", "block", "interface", "slenderness_ratio", "mass", "coefficient")
+"""Columns of `rocking measurements list --details`."""
 AsJson = Annotated[bool, typer.Option("--json", help="Result as JSON.")]
 
 measurements = typer.Typer(
@@ -42,13 +44,16 @@ def add(
 
 
 @measurements.command(name="list")
-def list_(as_json: AsJson = False) -> None:
+def list_(
+    details: Annotated[bool, typer.Option("--details", help="All measurements.")] = False, as_json: AsJson = False
+) -> None:
     """List the published and own measurements."""
     from rocking.evidence import store
     from rocking.evidence.measurements import GROUPS, datasets
 
     sets = [(name, datasets()[name]) for name in GROUPS]
-    deliver(ListAnswer([*sets, *((str(path), data) for path, data in store.own_sets())]), as_json=as_json)
+    sets += [(str(path), data) for path, data in store.own_sets()]
+    deliver(ListAnswer(sets, details), as_json=as_json)
 
 
 @measurements.command()
@@ -87,12 +92,18 @@ class ListAnswer:
     """Sets of measurements with their names."""
 
     sets: "list[tuple[str, DataSet]]"
+    details: bool = False
+
+    @property
+    def _rows(self) -> "list[dict[str, Any]]":
+        """Each measurement of all sets."""
+        return [row for _, data in self.sets for row in _measurements(data)]
 
     def answer(self) -> "Answer":
-        """Return each set, its size and its ranges."""
+        """Return each set, its size and its ranges; with details, also each measurement."""
         from rocking.answers import Answer
 
-        return Answer({"sets": [
+        return Answer(({"values": self._rows} if self.details else {}) | {"sets": [
             {
                 "name": name, "measurements": len(data), "laboratories": _different(data.laboratory),
                 "interfaces": _different(data.interface),
@@ -105,12 +116,15 @@ class ListAnswer:
     def show(self, page: Page) -> None:
         from rocking.answers import Display
 
+        if self.details:
+            page.rows(self._rows, MEASUREMENT, most=len(self._rows))
+            page.line()
         sets = self.answer()["sets"]
         ranged = ("slenderness_ratio", "coefficient")
-        rows = [{**entry, "set": Path(entry["name"]).name, "laboratories": ", ".join(entry["laboratories"]),
+        summaries = [{**entry, "set": Path(entry["name"]).name, "laboratories": ", ".join(entry["laboratories"]),
                  **{name: " - ".join(Display().cell(name, end) for end in entry[name]) for name in ranged}}
                 for entry in sets]  # fmt: skip
-        page.rows(rows, ("set", "measurements", *ranged, "laboratories"), most=len(rows))
+        page.rows(summaries, ("set", "measurements", *ranged, "laboratories"), most=len(summaries))
         page.line()
         page.facts(dict.fromkeys(("source", data.source) for _, data in self.sets))
         page.facts(dict.fromkeys(("own files", str(Path(name).parent)) for name, _ in self.sets if Path(name).suffix))
@@ -149,6 +163,12 @@ class CalibrationAnswer:
         page.line()
         for sentence in verdict(self.league, self.data):
             page.line(sentence)
+
+
+def _measurements(data: "DataSet") -> "list[dict[str, Any]]":
+    """Return the rows of a set for an answer."""
+    columns = {name: data.exported().columns[name].values.tolist() for name in MEASUREMENT}
+    return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
 
 
 def _different(names: tuple[str, ...]) -> list[str]:

@@ -29,6 +29,7 @@ from rocking.restitution import (
 from rocking.restitution.bed_table import HARDNESS, POINTS
 from rocking.restitution.contact_bed import ContactBedModel, tabulated
 from rocking.restitution.distributed_impulse import distributed
+from rocking.restitution.registry import model as resolved
 from rocking.restitution.shifted_impulse import shifted
 
 
@@ -212,6 +213,8 @@ def league(extra: Sequence[RestitutionModel] = (), measurements: DataSet | None 
     ------
     InvalidValueError
         If the measurements have fewer than five blocks.
+    UnknownModelError
+        If an element of `extra` is not a restitution model.
 
     Examples
     --------
@@ -223,7 +226,7 @@ def league(extra: Sequence[RestitutionModel] = (), measurements: DataSet | None 
         raise InvalidValueError(
             "measurements of at least {fewest} blocks are required, got {count}", fewest=FEWEST, count=count
         )
-    rows = [*_standing(data), *(_row(as_it_is(model), data) for model in extra)]
+    rows = [*_standing(data), *(_row(as_it_is(resolved(model)), data) for model in extra)]
     return tuple(sorted(rows, key=lambda row: row.rmse))
 
 

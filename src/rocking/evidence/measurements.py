@@ -11,6 +11,9 @@ from typing import Any
 import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
+from rocking.exported import Exported
+from rocking.tables import Column, Table
+from rocking.tables.table import text_array
 
 GROUPS = ("table1", "S", "M", "L")  # independent data sets, without Table 2, which contains means of Table 1
 
@@ -22,8 +25,10 @@ _WORDS = ("labels", "group", "interface", "laboratory")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class DataSet:
+class DataSet(Exported):
     """Measured coefficients of restitution of homogeneous rectangular blocks.
+
+    `to_dataframe()` returns one row per measurement, and `to_csv` writes these rows.
 
     Parameters
     ----------
@@ -79,6 +84,35 @@ class DataSet:
     def group_number(self) -> IntArray:
         """Index of each row's group in `GROUPS`."""
         return np.array([GROUPS.index(group) for group in self.group])
+
+    def exported(self) -> Table:
+        """Return one row per measurement.
+
+        Returns
+        -------
+        Table
+            Data set, block, interface and laboratory; slenderness ratio h/b [-], mass [kg], r [-] and its interval of
+            rounding [-].
+
+        Examples
+        --------
+        >>> table = datasets()["S"].to_dataframe()
+        >>> print(*table[["block", "slenderness_ratio", "mass [kg]", "coefficient"]].iloc[0])
+        S1 1.5 0.1133 0.69
+        """
+        texts = {
+            "set": (self.group, "data set"),
+            "block": (self.labels, "block, or materials at the interface"),
+            "interface": (self.interface, "materials in contact"),
+            "laboratory": (self.laboratory, "laboratory"),
+        }
+        columns = {name: Column(text_array(values), "", meaning) for name, (values, meaning) in texts.items()}
+        columns["slenderness_ratio"] = Column.of("slenderness_ratio", self.slenderness)
+        columns["mass"] = Column.of("mass", self.mass)
+        columns["coefficient"] = Column.of("coefficient", self.coefficient)
+        columns["low"] = Column(self.low, "1", "lower end of the interval of rounding")
+        columns["high"] = Column(self.high, "1", "upper end of the interval of rounding")
+        return Table("measurement", columns, provenance={"source": self.source})
 
     def rows(self, chosen: Sequence[int] | FloatArray) -> "DataSet":
         """Return selected rows, in the stated order.

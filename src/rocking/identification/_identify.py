@@ -218,7 +218,8 @@ def _result(
         refused.append(
             Message("the coefficient of restitution scatters by {share:.0f} %", {"share": 100.0 * scattered.value})
         )
-    remedy = Message("check the sizes of the body, then {way}", {"way": _TREND}) if prior.body is not None else _TREND
+    body = prior.body
+    remedy = Message("check the sizes of the body, then {way}", {"way": _TREND}) if body is not None else _TREND
     trend = {"probability": p_value, "remedy": remedy}
     if p_value < _MIN_P_VALUE and not prior.trend:
         refused.append(
@@ -232,8 +233,11 @@ def _result(
         )
     if not posterior.converged:
         doubts.append("The maximum of the posterior was not found for all nodes. The intervals may be wrong.")
-    frequency = math.sqrt(posterior.model.p[0] * posterior.model.p[1])
-    body, alpha = prior.body, posterior.model.alpha
+        if body is None:
+            doubts.append(
+                Message("State the size of the body: without the size, p and the slenderness angle are unknown.")
+            )
+    frequency, alpha = math.sqrt(posterior.model.p[0] * posterior.model.p[1]), posterior.model.alpha
     experiments: tuple[Design, ...] = ()
     if math.isfinite(r.value):
         p_error = float(posterior.model.deviation[FREQUENCY])

@@ -39,6 +39,20 @@ def test_add_list_calibrate(printed, answered, own):
     assert "me: oak/steel" in page
 
 
+@pytest.mark.verifies("behaviour")
+def test_details_list_every_measurement(printed, answered, own):
+    """--details lists the 39 published rows, with block S1 of Table 3 of Mao et al. (2024); without, there are none."""
+    assert "values" not in answered("measurements", "list")
+    rows = answered("measurements", "list", "--details")["values"]
+    assert len(rows) == 39
+    first = {"set": "S", "block": "S1", "slenderness_ratio": 1.5, "mass": 0.1133, "coefficient": 0.69}
+    (row,) = (row for row in rows if row["block"] == "S1")
+    assert {name: row[name] for name in first} == pytest.approx(first)
+    assert rows[0]["mass"] is None  # not stated in Table 1
+    assert "granite/granite" in printed("measurements", "list", "--details")
+    assert "granite/granite" not in printed("measurements", "list")
+
+
 @pytest.mark.slow
 @pytest.mark.verifies("behaviour")
 def test_paper_on_a_selection(answered, own):

@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from rocking.errors import UnknownModelError
 from rocking.evidence import all_measurements, comparison, league, verdict
 from rocking.evidence._league import as_it_is, contenders
 from rocking.evidence.likelihood import interval_log_likelihood
@@ -178,3 +179,10 @@ def test_the_models_as_they_are_have_their_parameters():
     taken = [one.fit(all_measurements(), [ALL])[0] for one in contenders() if not one.parameters]
     assert [model.k for model in taken if model.name == "shifted-impulse"] == [2.0 / 3.0]
     assert [model.q for model in taken if model.name == "distributed-impulse"] == [0.0, 1.0, 2.0]
+
+
+def test_a_function_is_no_model() -> None:
+    """A plain function in the league is refused as in a simulation; the names of models are accepted."""
+    with pytest.raises(UnknownModelError, match="got a function object without method raw_coefficient"):
+        league([lambda body: 0.9])
+    assert [row.name for row in league(["fixed:r=0.9"])].count("fixed:r=0.9") == 1

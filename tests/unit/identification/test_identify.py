@@ -254,3 +254,16 @@ def test_free_rocking_needs_no_compiled_engine():
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert done.stdout.startswith("The coefficient of restitution is")
+
+
+def test_an_uncertain_maximum_without_a_body_names_the_remedy():
+    """Times without noise do not determine p and the slenderness angle without the size of the body; with it they do."""
+    free = rk.free_rocking(BLOCK, rotation=0.5 * BLOCK.slenderness_angle, restitution=0.91)
+    times = ImpactTimes(free.impacts["time"][:11])
+    without, with_body = identify(times), identify(times, BLOCK)
+    assert not without.converged
+    assert without.doubts[-1] == (
+        "State the size of the body: without the size, p and the slenderness angle are unknown."
+    )
+    assert with_body.converged
+    assert not any("State the size" in doubt for doubt in with_body.doubts)
