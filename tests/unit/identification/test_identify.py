@@ -257,7 +257,7 @@ def test_free_rocking_needs_no_compiled_engine():
 
 
 def test_an_uncertain_maximum_without_a_body_names_the_remedy():
-    """Times without noise do not determine p and the slenderness angle without the size of the body; with it they do."""
+    """Times without noise determine p and the slenderness angle only with the size of the body."""
     free = rk.free_rocking(BLOCK, rotation=0.5 * BLOCK.slenderness_angle, restitution=0.91)
     times = ImpactTimes(free.impacts["time"][:11])
     without, with_body = identify(times), identify(times, BLOCK)
