@@ -315,6 +315,13 @@ _IMPACT_MODELS = (
     Quantity("saddles", "1", "number of saddles: balanced on an edge"),
     Quantity("summits", "1", "number of summits: balanced on a corner"),
     Quantity("stands_in", "1", "number of the current pose of the body"),
+    Quantity("settling_rotation", "rad", "rotation from the pose as placed into the present pose"),
+    Quantity("smallest_overturning_tilt", "rad", "tilt with the centre of mass above the nearest edge of the base"),
+    Quantity(
+        "largest_overturning_tilt",
+        "rad",
+        "tilt with the centre of mass above the farthest corner of the base",
+    ),
     Quantity("straight_rise", "m", "rise of the centre of mass for toppling in one direction"),
     Quantity("lowest_rise", "m", "smallest rise of the centre of mass for toppling into this pose"),
     Quantity("topples_into", "1", "number of the pose after toppling", label="into pose"),

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from rocking import checks
 from rocking.answers import Answer, AnswerRows, Display
 from rocking.bodies import Block, Body, Section, Solid
 from rocking.bodies.equilibria import TOLERANCES, BaseTolerance, Equilibria, StablePose, base_tolerances
+from rocking.bodies.formats.mesh import SMALL_ROTATION
 from rocking.bodies.solid import RoundBase
 from rocking.cli import options
 from rocking.cli.arguments import Arguments
@@ -19,6 +21,7 @@ from rocking.cli.page import Page, deliver
 from rocking.cli.restitution import named_body
 from rocking.cli.solids import show_body
 from rocking.cli.spelling import UsageError
+from rocking.conventions import LENGTH_UNITS
 from rocking.spec.bodies import without_restraints
 
 if TYPE_CHECKING:
@@ -39,7 +42,9 @@ def equilibria(
     body: options.BodyFile = None,
     density: options.Density = None,
     units: options.Units = None,
-    min_barrier: Annotated[float | None, typer.Option(help=r"Lowest energy barrier of a pose \[m].")] = None,
+    min_barrier: Annotated[
+        str | None, typer.Option(help=r"Lowest energy barrier of a pose, or with unit: 2mm \[m, or --units].")
+    ] = None,
     sets: options.Set = None,
     output: Annotated[list[str] | None, options.output(EXPORTS)] = None,
     details: options.Details = False,
@@ -56,8 +61,15 @@ def equilibria(
         raise UsageError(
             "a 3D body is needed: give a mesh, a file with [[solid.part]], or a block or a section with depth"
         )
-    result = subject.equilibria(min_barrier=min_barrier)
-    deliver(EquilibriaAnswer(subject, result, arguments.length or "m", details), exports, as_json=as_json)
+    length = arguments.length or "m"
+    result = subject.equilibria(min_barrier=None if min_barrier is None else _barrier(min_barrier, length))
+    deliver(EquilibriaAnswer(subject, result, length, details), exports, as_json=as_json)
+
+
+def _barrier(text: str, length: str) -> float:
+    """Return a barrier [m]. A number without unit is in the unit of lengths of the command."""
+    value, unit = checks.quantity("--min-barrier", text, "m")
+    return value if unit else value * LENGTH_UNITS[length]
 
 
 @dataclass(frozen=True)
@@ -73,6 +85,11 @@ class EquilibriaAnswer:
     def pose(self) -> StablePose:
         """The present pose, into which the solid settles."""
         return self.equilibria.settling((0.0, 0.0, -1.0))
+
+    @property
+    def settling_rotation(self) -> float:
+        """Rotation from the pose as placed into the present pose [rad]."""
+        return self.solid.settling_rotation or math.atan2(math.hypot(*self.pose.down[:2]), -self.pose.down[2])
 
     @cached_property
     def bases(self) -> tuple[BaseTolerance, ...]:
@@ -95,7 +112,7 @@ class EquilibriaAnswer:
     def answer(self) -> Answer:
         """Return every stable pose, the energy barriers of the present pose, and the tolerance of its base."""
         equilibria, stable = self.equilibria, self.equilibria.stable
-        passes = equilibria.neighbours(self.pose)
+        passes, tilts = equilibria.neighbours(self.pose), self.pose.overturning_tilts
         return Answer({
             "body": self.solid.answer(),
             "stable": AnswerRows({
@@ -110,6 +127,9 @@ class EquilibriaAnswer:
             "summits": len(equilibria.summits),
             "rings": [{"kind": r.kind, "tilt": r.tilt, "centre_height": r.height} for r in equilibria.rings],
             "stands_in": self.pose.number,
+            "settling_rotation": self.settling_rotation,
+            "smallest_overturning_tilt": tilts[0],
+            "largest_overturning_tilt": tilts[1],
             "passes": AnswerRows({
                 "topples_into": [saddle.end for saddle in passes],
                 **{
@@ -146,6 +166,7 @@ class EquilibriaAnswer:
     def show(self, page: Page) -> None:
         equilibria, number = self.equilibria, self.pose.number
         answer, display = self.answer(), Display(self.length)
+        page.line(self._verdict(display), "bold")
         show_body(page, answer["body"], display)
         page.line()
         count = len(equilibria.stable)
@@ -165,9 +186,16 @@ class EquilibriaAnswer:
         else:
             page.line("Directions and tolerance of the base: --details    Files: -o poses.csv, -o poses.png")
 
+    def _verdict(self, display: Display) -> str:
+        if self.settling_rotation < math.radians(SMALL_ROTATION):
+            return "The body stands."
+        rotation = display.text("settling_rotation", self.settling_rotation)
+        return f"The body does not stand as placed: it rotates by {rotation} into pose {self.pose.number}."
+
     def _weakest(self, display: Display) -> list[tuple[str, str]]:
-        """Return labels and texts of the smallest uplift acceleration, the lowest barrier and the saddles."""
-        lines = []
+        """Return labels and texts of the tilt to overturning, the smallest uplift acceleration and the barrier."""
+        nearest, farthest = (display.text("smallest_overturning_tilt", tilt) for tilt in self.pose.overturning_tilts)
+        lines = [("tilt to overturning", f"{nearest} over the nearest edge, {farthest} over the farthest corner")]
         for base in self.bases[:1]:  # the first base has no tolerance
             uplift = f"from {display.text('uplift_acceleration', base.uplift_acceleration)}"
             if not isinstance(self.solid.base, RoundBase):

@@ -22,6 +22,7 @@ from rocking.bodies.equilibria.poses import (
 )
 from rocking.conventions import FloatArray, IntArray, g
 from rocking.errors import InvalidValueError
+from rocking.messages import Message, Option
 
 Path = Literal["straight", "lowest"]
 _CLOSE = 1e-9
@@ -456,17 +457,18 @@ def _notes(hull: Polytope, stable: Sequence[StablePose], left_out: int, min_rise
     at_end = (np.abs(hull.beyond) <= _CLOSE * size).any(axis=1)
     is_inside = (hull.inward > -_CLOSE * size).all(axis=1)
     crossed = (hull.beyond[:, 0] < _CLOSE * size) & (hull.beyond[:, 1] > -_CLOSE * size)
-    notes = []
+    notes: list[str] = []
     if count := int(((at_edge & crossed) | (at_end & is_inside)).sum()):
         notes.append(
             f"{count} projections of the centre of mass lie on an edge or a corner of a facet, within {_CLOSE:g} of "
             "the size: rounding decides on these poses"
         )
     if count := sum(pose.barrier < _SHALLOW * size for pose in stable):
-        notes.append(
-            f"{count} of {len(stable)} stable poses have an energy barrier below {1e3 * _SHALLOW * size:.2g} mm: the "
-            "body is round or rough there; min_barrier merges such poses"
-        )
+        notes.append(Message(
+            "{count} of {total} stable poses have an energy barrier below {barrier:.2g} mm: the body is round or rough "
+            "there; {option} ignores such poses",
+            {"count": count, "total": len(stable), "barrier": 1e3 * _SHALLOW * size, "option": Option("min_barrier")},
+        ))  # fmt: skip
     if left_out:
         notes.append(f"{left_out} stable poses with an energy barrier below {1e3 * min_rise:.2g} mm are ignored")
     return tuple(notes)

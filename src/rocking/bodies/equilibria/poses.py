@@ -88,6 +88,12 @@ class StablePose(Equilibrium):
         )
         return distances
 
+    @property
+    def overturning_tilts(self) -> tuple[float, float]:
+        """Tilt with the centre of mass above the nearest edge, and above the farthest corner, of `support` [rad]."""
+        farthest = float(np.linalg.norm(self.support, axis=1).max())
+        return math.atan2(float(self.edge_distances.min()), self.height), math.atan2(farthest, self.height)
+
     def uplift_acceleration(self, azimuth: ArrayLike) -> FloatArray:
         """Return the smallest constant ground acceleration with uplift towards an azimuth.
 

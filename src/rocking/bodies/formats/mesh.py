@@ -33,7 +33,7 @@ FEWEST_POINTS = 50  # smallest number of points of a cloud without faces [-]
 
 _LOWEST, _HIGHEST = 1e-3, 300.0
 _SINGLE = 2.0**-24
-_SMALL_ROTATION = 5.0  # largest rotation without a warning [degree]
+SMALL_ROTATION = 5.0  # largest rotation without a warning [degree]
 _BASE_TOLERANCE = 1e-6  # distance of corners from one plane / size of a mesh in single precision
 
 
@@ -131,12 +131,19 @@ def solid_from_mesh(
             mass=mass, centre=None if centre is None else centre_of_mass + mesh.middle, inertia=inertia,
         )  # fmt: skip
     solid.name, solid.repairs, solid.turn = path.name, repairs, part.rotation @ _turn(options.get("up", "z"))
+    if (angle := _angle(part.rotation)) >= SMALL_ROTATION:
+        solid.settling_rotation = math.radians(angle)
     return solid
 
 
+def _angle(turn: FloatArray) -> float:
+    """Return the angle between the vertical directions before and after a rotation [degree]."""
+    return math.degrees(math.acos(max(-1.0, min(1.0, float(turn[2, 2])))))
+
+
 def _settled_words(turn: FloatArray, height: float) -> str:
-    angle = math.degrees(math.acos(min(1.0, float(turn[2, 2]))))
-    if angle < _SMALL_ROTATION:
+    angle = _angle(turn)
+    if angle < SMALL_ROTATION:
         return Message(
             "rotated by {angle:.2g} degrees onto its contact points; height of the centre of mass {height:.4g} m",
             {"angle": angle, "height": height},

@@ -104,6 +104,7 @@ class Solid:
         self.name: str = ""
         self.repairs: tuple[str, ...] = ()
         self.turn: FloatArray = np.eye(3)
+        self.settling_rotation: float = 0.0  # rotation of an unstable body of a file into a stable pose [rad]
         listed = _listed(parts)
         self._ground = checks.number("ground", ground, "m")
         boxes = np.array([part.box() for part in listed])
@@ -362,6 +363,11 @@ class Solid:
         Equilibria
             Stable poses, saddles and summits in the user's coordinates, with passes and energy barriers.
 
+        Raises
+        ------
+        InvalidValueError
+            If `min_barrier` is negative, or larger than the largest dimension of the body.
+
         Examples
         --------
         >>> from rocking.bodies.solid import cylinder
@@ -369,6 +375,8 @@ class Solid:
         >>> len(equilibria.stable), [ring.kind for ring in equilibria.rings]
         (2, ['stable', 'summit', 'summit'])
         """
+        if min_barrier is not None:
+            min_barrier = checks.within("min_barrier", min_barrier, 0.0, self._size, unit="m", hint="check the unit")
         moments = self.local_moments
         placed = replace(moments, centre=self.centre)
         equilibria = equilibria_of(self.parts, placed, self._size, min_barrier)
@@ -422,6 +430,7 @@ class Solid:
         # no checks, because a similarity transformation of a valid body is valid
         result = object.__new__(Solid)
         result.name, result.repairs, result.turn = self.name, self.repairs, times(matrix, self.turn)
+        result.settling_rotation = self.settling_rotation
         result._ground, result._size, result.origin = self._ground, self._size * size, self.origin
         result.local_parts = tuple(parts)
         result.local_base = self.local_base.changed(size * matrix[:2, :2], np.zeros(3))
