@@ -82,7 +82,7 @@ def fragility(
     analysis: Annotated[
         str,
         typer.Option(
-            help="Type: stripes, incremental or cloud."
+            help="Type: stripes, incremental or cloud"
         ),
     ] = "stripes",
     restitution: options.Restitutions = None,
