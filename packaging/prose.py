@@ -1,4 +1,4 @@
-"""Check the English of manual, messages, docstrings and comments, and the names in the code: `make prose`.
+"""Check the English of manual, messages, docstrings and comments, and the names in the code. `make lint` runs it.
 
 `python packaging/prose.py [PATH ...]` lists every hit in files or folders; `--counts` prints the counts, `--keep`
 stores those that fell. Without options, the counts are compared with `packaging/prose.json`, and none may rise.
