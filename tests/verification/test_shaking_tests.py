@@ -69,22 +69,14 @@ def test_outcomes_of_other_tests_have_no_skill(motions, monkeypatch):
 
 @pytest.mark.verifies("measured", "goals for the granite rock", room="studies")
 def test_predictions_of_the_granite_rock_are_calibrated():
-    """Better than a logistic curve that is fitted to the other earthquakes, and not overconfident."""
+    """Better than a logistic curve that is fitted to the other earthquakes; not overconfident, not too cautious."""
     scores = json.loads(KEPT.read_text("utf-8"))["scores"]
     off, default = scores["without model error"], scores["model error of other earthquakes of this body"]
     assert off["brier"]["value"] <= 0.085
     assert default["brier"]["value"] <= 0.075
     assert default["balanced_accuracy"]["value"] >= 0.87
     assert abs(off["calibration"]) <= 2.0
-    assert default["calibration"] <= 2.0
+    assert abs(default["calibration"]) <= 2.0
     assert default["better_than_logistic"]["low"] > 0.0
     any_azimuth = json.loads(KEPT.read_text("utf-8"))["any_azimuth"]["scores"]
     assert abs(any_azimuth["model error of other earthquakes of this body"]["calibration"]) <= 2.0
-
-
-@pytest.mark.xfail(reason="too cautious: the statistic is -2.6", strict=True)
-@pytest.mark.verifies("measured", "goal for the granite rock with the model error", room="studies")
-def test_predictions_with_the_model_error_are_not_too_cautious():
-    """Spiegelhalter's statistic of the default is within 2: a goal that is not reached."""
-    scores = json.loads(KEPT.read_text("utf-8"))["scores"]
-    assert abs(scores["model error of other earthquakes of this body"]["calibration"]) <= 2.0

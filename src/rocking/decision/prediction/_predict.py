@@ -10,7 +10,7 @@ from rocking.bodies import Body, Solid
 from rocking.conventions import FloatArray
 from rocking.decision.prediction.forecast import Chance, EndsOfRange, OutcomePairs, Prediction
 from rocking.decision.prediction.mechanics import MEASURED, SampledBodies, motion_sequence
-from rocking.decision.prediction.model_error import MODEL_ERROR
+from rocking.decision.prediction.model_error import MODEL_ERROR, sharpened
 from rocking.dynamics.mechanics import mechanics_for
 from rocking.dynamics.settings import check_progress, thread_count
 from rocking.errors import InvalidValueError, RockingError
@@ -174,7 +174,7 @@ def predict(  # noqa: PLR0913 - each uncertain input is an argument
                 None, 0,
             )  # fmt: skip
             if not np.isnan(other_results["overturning"]).all():
-                beside[name] = _chance(other_results["overturning"], design.seed)
+                beside[name] = _chance(_calibrated(other_results["overturning"], mechanics.slope), design.seed)
     return Prediction(
         body=body,
         motions=summaries_of(mechanics.motions),
@@ -182,7 +182,10 @@ def predict(  # noqa: PLR0913 - each uncertain input is an argument
         assumptions=mechanics.assumed,
         fixed=mechanics.not_sampled,
         sliding_beyond=min_sliding,
-        chances={name: _chance(values, design.seed) for name, values in sampled.items()},
+        chances={
+            name: _chance(_calibrated(values, mechanics.slope) if name == "overturning" else values, design.seed)
+            for name, values in sampled.items()
+        },
         contributions=shares,
         ends=_ends(mechanics, points, overturned),
         outcome_pairs=_outcome_pairs(results, len(points), mechanics.names),
@@ -272,6 +275,17 @@ def _counted(
     return {name: np.column_stack(values) for name, values in columns.items()}
 
 
+def _calibrated(occurred: FloatArray, slope: float) -> FloatArray:
+    """Return outcomes with the calibrated probability as mean under each motion, and a scatter in proportion."""
+    if slope == 1.0:
+        return occurred
+    mean = np.nansum(occurred, axis=0) / np.maximum((~np.isnan(occurred)).sum(axis=0), 1)
+    calibrated = sharpened(mean, slope)
+    variance = mean * (1.0 - mean)
+    rate = slope * calibrated * (1.0 - calibrated) / np.where(variance > 0.0, variance, 1.0)
+    return np.asarray(calibrated + (occurred - mean) * rate)
+
+
 def _chance(occurred: FloatArray, seed: int) -> Chance:
     """Return the probability of an event from its occurrences, shape (bodies, motions)."""
     valid = (~np.isnan(occurred)).sum(axis=0)
@@ -316,7 +330,7 @@ def _ends(mechanics: SampledBodies, points: FloatArray, overturned: FloatArray) 
         column += width
         order, size = np.argsort(level, kind="stable"), max(1, int(FIFTH * len(points)))
         low, high = order[:size], order[-size:]
-        ends = [(float(sampled[end].mean()), _mean(overturned[end])) for end in (low, high)]
+        ends = [(float(sampled[end].mean()), _mean(overturned[end], mechanics.slope)) for end in (low, high)]
         by_input[name] = EndsOfRange(*ends[0], *ends[1])
     return by_input
 
@@ -324,12 +338,14 @@ def _ends(mechanics: SampledBodies, points: FloatArray, overturned: FloatArray) 
 def _directions(mechanics: SampledBodies, points: FloatArray, overturned: FloatArray) -> tuple[float, ...]:
     """Return the probability of overturning in each quarter of the sampled azimuths."""
     quarter = np.floor(4.0 * mechanics.probabilities(points)["azimuth"][:, 0])
-    return tuple(_mean(overturned[quarter == number]) for number in range(4) if (quarter == number).any())
+    return tuple(
+        _mean(overturned[quarter == number], mechanics.slope) for number in range(4) if (quarter == number).any()
+    )
 
 
-def _mean(occurred: FloatArray) -> float:
+def _mean(occurred: FloatArray, slope: float) -> float:
     valid = occurred[~np.isnan(occurred)]
-    return float(valid.mean()) if valid.size else np.nan
+    return float(sharpened(valid.mean(), slope)) if valid.size else np.nan
 
 
 def _outcome_pairs(results: Mapping[str, FloatArray], count: int, names: Sequence[str]) -> OutcomePairs:

@@ -191,6 +191,7 @@ class SampledBodies(ABC):
     """A body for an engine: samples from the unit cube, and outcomes."""
 
     kind: str = "natural"  # class of bodies with a common prior of the model error
+    slope: float = 1.0  # calibration slope of the probability of overturning [-]
     widths_of: Mapping[str, int] = {}  # number of dimensions of an input in the unit cube; default: 1
     reasons: Mapping[str, str] = {}  # reasons of the defaults, by input
     never_sampled: Mapping[str, str] = MappingProxyType({})  # reasons for quantities that are not sampled, by name
@@ -226,7 +227,7 @@ class SampledBodies(ABC):
         if error is None:
             self.inputs["model_error"] = Uncertain(Message("off"), lambda levels: np.ones(levels.shape), fixed=True)
             return
-        self.inputs["model_error"] = Uncertain(error.text, error.factors)
+        self.inputs["model_error"], self.slope = Uncertain(error.text, error.factors), error.slope
         if self.stated.get("model_error") is None:
             self.assumed["model_error"] = with_reason(error.text, error.source)
 

@@ -9,13 +9,13 @@ other shape is necessary for the factors. Lengths are then s f times longer.
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeGuard
 
 import numpy as np
-from scipy.special import ndtri
+from scipy.special import expit, logit, ndtri
 
 from rocking import checks
 from rocking.conventions import FloatArray, percent
@@ -52,7 +52,7 @@ DEVIATIONS = np.linspace(0.1, 4.0, 40)
 SCATTERS = np.array([0.05, 0.1, 0.15, 0.2])
 """Grid of the standard deviation between repeated tests of one natural body, with equal prior probabilities [-]."""
 
-MOST_FACTOR = 20.0
+MOST_FACTOR, STEEPEST_SLOPE = 20.0, 10.0
 _HOW = (
     '"off", "machined", "object", "natural", a file of `rocking validate-predictions --update`, or a table with mean '
     "and covariance of ln of the factors"
@@ -66,6 +66,8 @@ class ModelError:
     mean: tuple[float, float]  # mean of ln of both factors [-]
     covariance: tuple[tuple[float, float], tuple[float, float]]  # covariance of ln of both factors [-]
     source: str
+    # calibration slope: factor on the log-odds of the probability of overturning, above 1 if it is too cautious [-]
+    slope: float = 1.0
 
     def __post_init__(self) -> None:
         mean = checks.finite("mean", self.mean, "-", (2,))
@@ -75,6 +77,7 @@ class ModelError:
             raise InvalidValueError(
                 parameter="model_error", allowed=f"factors up to {MOST_FACTOR:g}", value=mean.tolist()
             )
+        checks.within("slope", self.slope, 1.0 / STEEPEST_SLOPE, STEEPEST_SLOPE)
         if matrix[0, 1] != matrix[1, 0] or not matrix[0, 0] > 0.0 or not np.linalg.det(matrix) > 0.0:
             raise InvalidValueError(
                 "the covariance of {parameter} must be symmetric and positive definite, got {value}",
@@ -82,10 +85,10 @@ class ModelError:
             )  # fmt: skip
 
     @classmethod
-    def of_moments(cls, mean: FloatArray, covariance: FloatArray, source: str) -> "ModelError":
+    def of_moments(cls, mean: FloatArray, covariance: FloatArray, source: str, slope: float = 1.0) -> "ModelError":
         """Return the model error with a mean and a covariance of ln of the factors."""
         (first, both), (_, second) = covariance.tolist()
-        return cls((float(mean[0]), float(mean[1])), ((first, both), (both, second)), source)
+        return cls((float(mean[0]), float(mean[1])), ((first, both), (both, second)), source, slope)
 
     def factors(self, levels: FloatArray) -> FloatArray:
         """Return the factors at points of the unit square, shape (n, 2)."""
@@ -107,7 +110,7 @@ class ModelError:
 
     def save(self, path: Path) -> None:
         """Write the model error to a file that `predict` accepts."""
-        table = {"mean": self.mean, "covariance": self.covariance, "source": self.source}
+        table = {"mean": self.mean, "covariance": self.covariance, "slope": self.slope, "source": self.source}
         path.write_text(json.dumps(table, indent=1) + "\n", "utf-8")
 
 
@@ -138,11 +141,17 @@ def model_error_of(stated: Any, kind: str) -> ModelError | None:
         return None
     if isinstance(stated, (str, Path)):
         return _in_file(Path(stated))
-    if isinstance(stated, Mapping) and {"mean", "covariance"} <= set(stated) <= {"mean", "covariance", "source"}:
+    if isinstance(stated, Mapping) and {"mean", "covariance"} <= set(stated) <= {f.name for f in fields(ModelError)}:
         mean = checks.finite("mean", stated["mean"], "-", (2,))
         covariance = checks.finite("covariance", stated["covariance"], "-", (2, 2))
-        return ModelError.of_moments(mean, covariance, str(stated.get("source", Message("given"))))
+        slope = checks.within("slope", stated.get("slope", 1.0), 1.0 / STEEPEST_SLOPE, STEEPEST_SLOPE)
+        return ModelError.of_moments(mean, covariance, str(stated.get("source", Message("given"))), slope)
     raise InvalidValueError(parameter="model_error", allowed=_HOW, value=stated)
+
+
+def sharpened(probability: FloatArray, slope: float) -> FloatArray:
+    """Return probabilities with their log-odds multiplied by a calibration slope; 0 and 1 are unchanged."""
+    return np.asarray(expit(slope * logit(probability)))
 
 
 def is_class(stated: Any) -> TypeGuard[str]:
@@ -185,9 +194,9 @@ class FurtherBody:
     covariance: FloatArray  # shape (2, 2)
     scatter: float  # mean square of ln of the uplift acceleration [-]
 
-    def error(self, source: str) -> ModelError:
+    def error(self, source: str, slope: float = 1.0) -> ModelError:
         """Return the model error of a test of this body."""
-        return ModelError.of_moments(self.mean, self.covariance + self.scatter * np.diag(ORDERS**2), source)
+        return ModelError.of_moments(self.mean, self.covariance + self.scatter * np.diag(ORDERS**2), source, slope)
 
 
 def hierarchy(bodies: Sequence[BodyEvidence], kind: str) -> FurtherBody:

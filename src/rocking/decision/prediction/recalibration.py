@@ -6,22 +6,29 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from scipy.optimize import brentq
+from scipy.special import expit, logit
 
-from rocking.conventions import FloatArray
+from rocking.conventions import FloatArray, IntArray
 from rocking.decision.prediction.mechanics import SampledBodies
 from rocking.decision.prediction.model_error import (
     ORDERS,
     SCATTERS,
+    STEEPEST_SLOPE,
     BodyEvidence,
     FurtherBody,
     ModelError,
     mixed,
+    sharpened,
 )
 from rocking.messages import Message
 from rocking.statistics.sobol import scrambled_sobol
 
 WIDE = ModelError((0.0, 0.0), ((0.09, 0.0), (0.0, 0.36)), "proposal")
 """Distribution from which the factors of the tests are sampled; weights convert it to narrower distributions."""
+
+SLOPE_DEVIATION, LEAST = 0.5, 1e-6
+"""Standard deviation of the prior of the calibration slope, and smallest probability of its fit [-]."""
 
 _STEPS = np.linspace(-0.9, 0.9, 19)
 OF_HISTORY = {"restitution", "friction", "level", "azimuth", "polarity", "model_error"}
@@ -67,30 +74,45 @@ class BodyTests:
 
     @cached_property
     def likelihood(self) -> FloatArray:
-        """Logarithm of the likelihood of each outcome at each node, shape (tests, nodes).
+        """Logarithm of the likelihood of the outcomes under each earthquake at each node, shape (earthquakes, nodes).
 
         The tests of one earthquake count as one test, because their motions differ only in scale.
         """
         p, happened = self.probabilities, self.observed[:, None]
-        _, index, count = np.unique(self.earthquakes, return_inverse=True, return_counts=True)
-        terms = np.where(happened == 1.0, np.log(p), np.log(1.0 - p)) / count[index][:, None]
-        return np.where(np.isfinite(happened), terms, 0.0)
+        terms = np.where(happened == 1.0, np.log(p), np.log(1.0 - p))
+        terms = np.where(np.isfinite(happened), terms, 0.0)
+        return np.array([terms[self._index == k].mean(axis=0) for k in range(self._index.max() + 1)])
 
-    def weights(self, prior: FurtherBody | None, tests: Any = slice(None)) -> FloatArray:
-        """Return the posterior probabilities of the nodes from a subset of the tests; the default prior is flat."""
-        logarithms = self.likelihood[tests].sum(axis=0)
+    @cached_property
+    def _index(self) -> IntArray:
+        """Index of the earthquake of each test."""
+        return np.unique(self.earthquakes, return_inverse=True)[1]
+
+    def weights(self, prior: FurtherBody | None, *omitted: int) -> FloatArray:
+        """Return the posterior probabilities of the nodes without omitted earthquakes; the default prior is flat."""
+        used = np.ones(len(self.likelihood), dtype=bool)
+        used[list(omitted)] = False
+        logarithms = self.likelihood[used].sum(axis=0)
         if prior is not None:
             off = self.nodes[:, :2] - prior.mean
             logarithms = logarithms - 0.5 * np.einsum("ki,ij,kj->k", off, np.linalg.inv(prior.covariance), off)
         weights = np.exp(logarithms - logarithms.max())
         return np.asarray(weights / weights.sum())
 
+    def slope(self, prior: FurtherBody, *omitted: int) -> float:
+        """Return the calibration slope from predictions of each earthquake by all others, without omitted ones."""
+        probability = np.full(len(self.observed), np.nan)
+        for k in set(range(len(self.likelihood))) - {*omitted}:
+            probability[self._index == k] = self.probabilities[self._index == k] @ self.weights(prior, k, *omitted)
+        used = np.isfinite(probability) & np.isfinite(self.observed)
+        return calibration_slope(probability[used], self.observed[used])
+
     def left_out(self, prior: FurtherBody) -> FloatArray:
         """Return the probability of each test from the tests of all other earthquakes."""
         probability = np.empty(len(self.observed))
-        for name in np.unique(self.earthquakes):
-            out = self.earthquakes == name
-            probability[out] = self.probabilities[out] @ self.weights(prior, ~out)
+        for k in range(len(self.likelihood)):
+            out = self._index == k
+            probability[out] = sharpened(self.probabilities[out] @ self.weights(prior, k), self.slope(prior, k))
         return probability
 
     def without(self, prior: FurtherBody) -> FloatArray:
@@ -103,7 +125,8 @@ class BodyTests:
         """Return the model error of a further test of this body."""
         mean, covariance, scatter = self._moments(self.weights(prior))
         facts = {"tests": int(np.isfinite(self.observed).sum())}
-        return FurtherBody(mean, covariance, scatter).error(Message("{tests} tests of this body", facts))
+        source = Message("{tests} tests of this body", facts)
+        return FurtherBody(mean, covariance, scatter).error(source, self.slope(prior))
 
     def tested(self, name: str, kind: str) -> BodyEvidence:
         """Return the factors only from these tests, as evidence for further bodies."""
@@ -120,6 +143,19 @@ class BodyTests:
         with np.errstate(divide="ignore"):
             mean, covariance = mixed(np.log(weights), nodes[:, :2], within)
         return mean, covariance, float(weights @ nodes[:, 2] ** 2)
+
+
+def calibration_slope(probability: FloatArray, outcome: FloatArray) -> float:
+    """Return the factor on the log-odds of probabilities that fits outcomes best, with a normal prior around 1."""
+    odds = logit(np.clip(probability, LEAST, 1.0 - LEAST))
+
+    def gradient(slope: float) -> float:
+        return float(odds @ (outcome - expit(slope * odds)) - (slope - 1.0) / SLOPE_DEVIATION**2)
+
+    ends = 1.0 / STEEPEST_SLOPE, STEEPEST_SLOPE
+    if gradient(ends[0]) <= 0.0 or gradient(ends[1]) >= 0.0:
+        return ends[0] if gradient(ends[0]) <= 0.0 else ends[1]
+    return float(brentq(gradient, *ends))
 
 
 def _smoothed(logarithms: FloatArray, overturned: FloatArray, centres: FloatArray) -> FloatArray:

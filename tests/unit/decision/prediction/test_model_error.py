@@ -21,8 +21,8 @@ from rocking.decision.prediction.model_error import (
     kept_error,
     model_error_of,
 )
-from rocking.decision.prediction.recalibration import WIDE, BodyTests, wide_samples
-from rocking.errors import InvalidValueError
+from rocking.decision.prediction.recalibration import WIDE, BodyTests, calibration_slope, wide_samples
+from rocking.errors import InvalidValueError, RockingError
 from rocking.statistics.scores import Forecasts
 
 pytestmark = pytest.mark.verifies(room="studies")
@@ -277,3 +277,61 @@ def test_ends_of_the_model_error_are_uplift_accelerations():
     ends = prediction.ends["model_error"]
     assert ends.low == pytest.approx(math.exp(-0.14), rel=0.02)
     assert ends.high == pytest.approx(math.exp(0.14), rel=0.02)  # mean of a fifth of a normal distribution: 1.40 sd
+
+
+@pytest.mark.verifies("closed form", "fractions with known log-odds", within="1 %", room="studies")
+@pytest.mark.parametrize("true", [0.7, 1.0, 2.0])
+def test_the_calibration_slope_is_found(true):
+    """Outcomes with the log-odds of the probabilities times a slope; within 1 %: the prior draws towards 1."""
+    probability = np.linspace(0.01, 0.99, 99)
+    counts = 1000
+    probabilities = np.repeat(probability, counts)
+    happened = np.round(counts / (1.0 + (1.0 / probability - 1.0) ** true)).astype(int)
+    outcomes = np.concatenate([np.arange(counts) < count for count in happened]) * 1.0
+    assert calibration_slope(probabilities, outcomes) == pytest.approx(true, rel=0.01)
+    assert calibration_slope(probabilities[:0], outcomes[:0]) == pytest.approx(1.0)  # only the prior
+    few = np.array([0.6, 0.4]), np.array([1.0, 0.0])
+    assert 1.0 < calibration_slope(*few) < 1.2  # two outcomes change the prior little
+
+
+def test_an_earthquake_does_not_predict_itself():
+    """Other outcomes under one earthquake change the predictions of all other earthquakes, but not its own."""
+    random = np.random.default_rng(2)
+    logarithms = random.normal(size=(24, 32, 2)) * [0.3, 0.6]
+    overturned = (logarithms[:, :, 1] < random.normal(size=(24, 1))) * 1.0
+    observed, earthquakes = (random.random(24) < overturned.mean(axis=1)) * 1.0, np.repeat(np.arange(6), 4)
+    first = earthquakes == 0
+    other = np.where(first, 1.0 - observed, observed)
+    prior = hierarchy([], "natural")
+    before, after = (
+        BodyTests(logarithms, overturned, values, earthquakes).left_out(prior) for values in (observed, other)
+    )
+    np.testing.assert_array_equal(after[first], before[first])
+    assert (after[~first] != before[~first]).all()
+
+
+def test_a_slope_sharpens_the_probability_of_overturning(tmp_path):
+    """Log-odds times the slope, also after a file; 0 and 1, and other events, are unchanged."""
+    pulses = [rk.pulses.sine(amplitude, 0.8) for amplitude in (1.0, 3.4, 3.7, 30.0)]
+    options = {"count": 64, "contributions": False, "threads": 1}
+    plain, steep = (ModelError((0.0, 0.0), ((0.01, 0.0), (0.0, 0.04)), "tests", slope=slope) for slope in (1.0, 2.0))
+    steep.save(tmp_path / "error.json")
+    one, two, kept = (
+        rk.predict(rk.Block(width=0.5, height=2.0), pulses, model_error=error, **options).chances
+        for error in (plain, steep, tmp_path / "error.json")
+    )
+    p, sharp = one["overturning"].per_motion, two["overturning"].per_motion
+    inner = (p > 0.0) & (p < 1.0)
+    assert inner.sum() == 2
+    np.testing.assert_allclose(sharp[inner], 1.0 / (1.0 + (1.0 / p[inner] - 1.0) ** 2), rtol=1e-12)
+    np.testing.assert_array_equal(sharp[~inner], p[~inner])
+    assert two["overturning"].value == pytest.approx(sharp.mean())
+    assert two["overturning"].low < two["overturning"].value < two["overturning"].high
+    np.testing.assert_array_equal(kept["overturning"].per_motion, sharp)
+    np.testing.assert_array_equal(two["uplift"].per_motion, one["uplift"].per_motion)
+
+
+@pytest.mark.parametrize("slope", [0.0, -1.0, 11.0, math.nan, "steep"])
+def test_bad_slopes(slope):
+    with pytest.raises(RockingError, match="slope"):
+        model_error_of({"mean": [0.0, 0.0], "covariance": [[0.01, 0.0], [0.0, 0.04]], "slope": slope}, "natural")
