@@ -97,16 +97,21 @@ class ModelError:
 
     @property
     def text(self) -> str:
-        """Medians and 95 % intervals of both factors as text."""
+        """95 % intervals of both factors, and the calibration slope, as text."""
         deviations = np.sqrt(np.array(self.covariance).diagonal())
         ends = np.exp(np.array(self.mean) + 1.96 * np.outer([-1.0, 1.0], deviations))
         facts = {
             "low": float(ends[0, 0]), "high": float(ends[1, 0]), "lower": float(ends[0, 1]), "higher": float(ends[1, 1])
         }  # fmt: skip
-        return Message(
+        factors = Message(
             "uplift acceleration times {low:.2f} to {high:.2f}, energy barrier times {lower:.2f} to {higher:.2f} in "
             "95 % of samples", facts,
         )  # fmt: skip
+        if self.slope == 1.0:
+            return factors
+        return Message(
+            "{factors}; log-odds of overturning times {slope:.2f}", {"factors": factors, "slope": self.slope}
+        )
 
     def save(self, path: Path) -> None:
         """Write the model error to a file that `predict` accepts."""

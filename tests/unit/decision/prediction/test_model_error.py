@@ -329,6 +329,8 @@ def test_a_slope_sharpens_the_probability_of_overturning(tmp_path):
     assert two["overturning"].low < two["overturning"].value < two["overturning"].high
     np.testing.assert_array_equal(kept["overturning"].per_motion, sharp)
     np.testing.assert_array_equal(two["uplift"].per_motion, one["uplift"].per_motion)
+    assert "times 2.00" in steep.text
+    assert "odds" not in plain.text
 
 
 @pytest.mark.parametrize("slope", [0.0, -1.0, 11.0, math.nan, "steep"])
