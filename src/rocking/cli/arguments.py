@@ -231,6 +231,8 @@ class Arguments:
                 raise UsageError("Give a body file or dimensions, not both")
             return self.table("body", {"file": file, "units": self.length, **values}, {"file": file})
         if set(self.sizes) not in map(set, _SIZES):
+            if "width" not in self.options:
+                raise UsageError("No body. Give a body file")
             raise UsageError(
                 "No complete body: got {options}. Give a body file, --width and --height, or --set "
                 "body.slenderness_angle and body.semi_diagonal", options=" ".join(self.sizes.values()) or "no option",

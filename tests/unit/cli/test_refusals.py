@@ -98,6 +98,7 @@ def folder(tmp_path_factory):
 REFUSED = {
     "equilibria": {
         "points.toml": "a 3D body is needed",
+        "--density 2": "No body. Give a body file; see rocking equilibria --help",
     },
     "examples": {
         "pierr": "did you mean 'pier'?",
