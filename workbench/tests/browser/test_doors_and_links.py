@@ -110,6 +110,45 @@ def test_a_call_refused_before_the_sign_in_is_repeated(open_page: Callable[..., 
     expect(door).to_have_count(0)
 
 
+def test_a_refusal_read_after_the_sign_in_opens_no_second_dialog(open_page: Callable[..., Any], served: Any) -> None:
+    """The status of a refusal arrives before the sign-in and its content after it: the call is repeated."""
+    page = open_page()
+    page.get_by_test_id("facts-table").wait_for()
+    page.evaluate("""() => {
+      const read = Response.prototype.json;
+      Response.prototype.json = function () {
+        if (!this.url.endsWith('/api/questions') || this.status !== 401) return read.call(this);
+        return new Promise((resolve) => (window.arrive = resolve)).then(() => read.call(this));
+      };
+    }""")
+    page.context.clear_cookies()
+    page.evaluate("() => void (window.late = import('/app/api.js').then((api) => api.call('questions')))")
+    page.wait_for_function("window.arrive !== undefined")
+    page.locator("#view-body").get_by_label("Width").fill("0.75")
+    door = page.get_by_role("dialog", name="Sign in again")
+    door.wait_for()
+    page.goto(served.api("session/link")["url"])
+    expect(door).to_have_count(0)
+    page.evaluate("window.arrive()")
+    assert page.evaluate("window.late.then((answer) => answer.questions)") == []
+    expect(door).to_have_count(0)
+
+
+def test_a_refused_call_keeps_the_message_of_the_dialog(open_page: Callable[..., Any], served: Any) -> None:
+    """A call that is refused while the dialog shows that a link is wrong does not remove this message."""
+    page = open_page()
+    page.get_by_test_id("facts-table").wait_for()
+    page.context.clear_cookies()
+    page.get_by_label("Height").fill("3")
+    door = page.get_by_role("dialog", name="Sign in again")
+    door.get_by_label("Link or token").fill(f"{served.url}/#token=nothing")
+    door.get_by_role("button", name="Sign in").click()
+    door.get_by_text("wrong, used up or too old").wait_for()
+    refused = "import('/app/api.js').then((api) => api.call('questions')).catch((error) => error.status)"
+    assert page.evaluate(refused) == 401
+    expect(door).to_contain_text("wrong, used up or too old")
+
+
 def test_the_door_of_an_open_tab_takes_a_pasted_link(open_page: Callable[..., Any], served: Any) -> None:
     """A wrong link is refused in words and may be corrected on the spot."""
     page = open_page()

@@ -41,9 +41,9 @@ export const latest = (key, path, json) =>
 export const superseded = (error) => error?.name === "AbortError";
 
 /** Save the result as a file; the file name of the server has priority.
- * @param {string} path @param {unknown} [json] @param {string} [fallbackName] */
-export const download = async (path, json, fallbackName) => {
-  const answer = await send(path, json === undefined ? { method: "GET" } : { json });
+ * @param {string} path @param {unknown} [json] @param {string} [fallbackName] @param {AbortSignal} [signal] */
+export const download = async (path, json, fallbackName, signal) => {
+  const answer = await send(path, json === undefined ? { method: "GET", signal } : { json, signal });
   saveBlob(await answer.blob(), nameOf(answer) ?? fallbackName ?? "");
 };
 
@@ -102,8 +102,12 @@ const send = async (path, options = {}) => {
     );
   });
   if (answer.ok) return answer;
-  if (answer.status === 401 && signIns > before) return send(path, options); // the call began before the sign-in
-  throw new ApiError(answer.status, await refusalOf(answer));
+  const refusal = await refusalOf(answer);
+  if (answer.status === 401) {
+    if (signIns > before) return send(path, options); // the call began before the sign-in
+    document.dispatchEvent(new CustomEvent("rocking:signed-out"));
+  }
+  throw new ApiError(answer.status, refusal);
 };
 
 /** @param {unknown} json */
@@ -119,7 +123,6 @@ const addressOf = (path, query) => {
 /** @param {Response} answer */
 const refusalOf = async (answer) => {
   const content = await answer.json().catch(() => ({}));
-  if (answer.status === 401) document.dispatchEvent(new CustomEvent("rocking:signed-out"));
   const error = { message: t("the server returned status {status}", { status: answer.status }), ...content.error };
   return answer.status === 401 && error.text ? { ...error, message: error.text, hint: null } : error; // the hint of the error is for scripts
 };

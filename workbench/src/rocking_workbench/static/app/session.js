@@ -24,9 +24,9 @@ const onSignedIn = (done) => document.addEventListener("rocking:signed-in", done
 /** Sign-in page before the application; the fragment of the address is kept.
  * @param {string} message */
 export const showDoor = (message) => {
-  const before = doorMessage.value;
-  doorMessage.value = message;
-  if (before !== null) return;
+  const open = doorMessage.value !== null;
+  doorMessage.value = message || (doorMessage.value ?? "");
+  if (open) return;
   if (document.body.dataset.started === "true") return openOver();
   inPlaceOf(document.getElementById("main"), html`<${Door} />`);
   document.body.classList.add("at-the-door");

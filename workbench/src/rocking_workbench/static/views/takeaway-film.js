@@ -1,6 +1,6 @@
 /** Animation as a GIF: shows its progress, starts once, can be cancelled. */
 import { html, useLayoutEffect, useRef, useSignal } from "/parts/preact.js";
-import { saveBlob } from "/app/api.js";
+import { download } from "/app/api.js";
 import { Button } from "/parts/fields.js";
 import { pathOfChosen } from "/views/response-chosen.js";
 import { t } from "/app/words.js";
@@ -22,7 +22,7 @@ export const Film = ({ app, children, ...more }) => {
     const clock = setInterval(tell, 5000);
     try {
       const inputs = app.inputs.get();
-      await save(`/api/${pathOfChosen("animation.gif", inputs.restitution)}`, inputs, abort.current.signal);
+      await download(pathOfChosen("animation.gif", inputs.restitution), inputs, NAME, abort.current.signal);
       app.say("The GIF is saved.");
     } catch (error) {
       if (error.name === "AbortError") app.say("The GIF is cancelled.");
@@ -40,19 +40,4 @@ export const Film = ({ app, children, ...more }) => {
     <div ref=${progress} class="film-progress" hidden=${!running} data-testid="film-progress">
       <span role="status">${running && t("Drawing the frames of the GIF: {time} s so far, typically 30 s.", { time: seconds.value })}</span>
       <${Button} aria-label="Cancel the GIF" onClick=${() => abort.current.abort()}>Cancel<//></div>`;
-};
-
-/** @param {string} path @param {Server.Inputs} inputs @param {AbortSignal} signal */
-const save = async (path, inputs, signal) => {
-  const headers = { "Content-Type": "application/json" };
-  /** @type {RequestInit} */
-  const options = { method: "POST", headers, body: JSON.stringify(inputs), signal, credentials: "same-origin" };
-  const answer = await fetch(path, options);
-  if (!answer.ok) {
-    const content = await answer.json().catch(() => ({}));
-    if (answer.status === 401) document.dispatchEvent(new CustomEvent("rocking:signed-out"));
-    throw new Error(content.error?.message ?? t("the server returned status {status}", { status: answer.status }));
-  }
-  const header = answer.headers.get("Content-Disposition") ?? "";
-  saveBlob(await answer.blob(), header.match(/filename="([^"]+)"/)?.[1] ?? NAME);
 };
