@@ -1,22 +1,33 @@
 """The documentation of the keys of a question, and the options that say them, come from its tables."""
 
+import dataclasses
+import inspect
+import math
 import tomllib
 from pathlib import Path
-from typing import get_args
+from typing import Literal, get_args
 
 import pytest
 from pydantic import BaseModel
+from pydantic.fields import FieldInfo
 
+from rocking.bodies.formats import body_from_toml
 from rocking.bodies.formats.schema import BodyFile, RestraintTable
-from rocking.errors import InvalidValueError
+from rocking.bodies.restraints import KINDS
+from rocking.decision.inventory import Thresholds
+from rocking.errors import BodyFileError, InvalidValueError
+from rocking.identification import identify
 from rocking.motions import pulses
 from rocking.motions.intensity import MEASURES
 from rocking.motions.pipeline import steps_of
 from rocking.motions.synthetic import families
 from rocking.spec import bodies, schema
-from rocking.spec.documents.identification import IdentificationDocument
+from rocking.spec.documents.identification import IdentificationDocument, IdentifyTable
 from rocking.spec.documents.response import ResponseDocument
+from rocking.spec.fields import JobTable, Text, key
+from rocking.spec.key_facts import facts
 from rocking.spec.questions import question_in
+from rocking.spec.questions.inventory import ThresholdsTable
 from rocking.spec.questions.map import MapQuestion
 from rocking.spec.reading import checked
 from rocking.spec.reference import reference, steps, targets
@@ -25,12 +36,86 @@ from rocking.studies import axes
 ROOT = Path(__file__).parents[2]
 
 
-def test_every_key_has_a_meaning():
-    """The pages of keys have a row per key, with type, unit, default, range and meaning."""
-    rows = [line for page in reference().values() for line in page.splitlines() if line.startswith("| `")]
-    assert [row for row in rows if row.endswith("|  |")] == []
-    assert "| `friction` | number | - |" in reference()["input_files"]
-    assert "| `count` | integer |  |  | >= 1" in reference()["input_files"]
+def _rows(page):
+    """Return the cells of the rows of keys in a page."""
+    lines = [line for line in page.splitlines() if line.startswith("| `")]
+    return [[cell.strip() for cell in line.strip("|").split(" | ")] for line in lines]
+
+
+def test_every_key_has_type_unit_default_range_and_meaning():
+    """All rows of the pages of keys and of the table [body] have six cells; "any" is followed by its reason."""
+    pages = [text for name, text in reference().items() if name != "names"]
+    body = (ROOT / "docs" / "questions.md").read_text(encoding="utf-8").partition("### [body]")[2]
+    rows = [row for page in (*pages, body) for row in _rows(page)]
+    assert len(rows) > 300
+    assert [row for row in rows if len(row) != 6 or not all(row)] == []
+    assert [row for row in rows if row[4].startswith("any") and len(row[4].split()) < 3] == []
+
+
+def test_facts_come_from_the_field():
+    """Limits, choices and lengths come from the type; a number without limits or reason has no range."""
+
+    class Table(JobTable):
+        length: float | None = key("length, default 2 m [m]", None, gt=0.0)
+        loads: list[float] = key("loads [N]", ...)
+        side: Literal["left", "right"] = key("side", "left")
+        name: Text | None = key("name", usual="name of the file")
+
+    fields = Table.model_fields
+    assert facts(fields["length"]) == ("number", "m", "2 m", "> 0", "length")
+    assert facts(fields["loads"]) == ("list of numbers", "N", "required", "any number of numbers", "loads")
+    assert facts(fields["side"]) == ("text", "-", "`left`", "left, right", "side")
+    assert facts(fields["name"]) == ("text", "-", "name of the file", "1 to 200 characters", "name")
+    assert facts(FieldInfo(annotation=float, default=1.0, description="offset [m]"))[3] == ""
+
+
+def _bounds(text):
+    """Yield sign and number of each limit in a range such as "> 0, <= 1"."""
+    for limit in text.split(", "):
+        sign, _, number = limit.partition(" ")
+        if number.replace(".", "").isdigit():
+            yield sign, float(number)
+
+
+@pytest.mark.parametrize("name", ThresholdsTable.model_fields)
+def test_the_ranges_of_thresholds_are_those_of_the_class(name):
+    """A threshold at a limit of the page is accepted if the limit is included; a threshold beyond it is refused."""
+    for sign, limit in _bounds(facts(ThresholdsTable.model_fields[name])[3]):
+        beyond = limit + (1e-9 if sign[0] == "<" else -1e-9)
+        with pytest.raises(InvalidValueError):
+            Thresholds(**{name: beyond})
+        if sign.endswith("="):
+            Thresholds(**{name: limit})
+        else:
+            with pytest.raises(InvalidValueError):
+                Thresholds(**{name: limit})
+
+
+def test_the_defaults_of_restraints_and_identifications_are_those_of_the_functions():
+    """A default that a description states is the default of the class or function."""
+    for kind in KINDS.values():
+        for entry in dataclasses.fields(kind):
+            if isinstance(entry.default, (bool, int, float)) and entry.default < math.inf:
+                stated = facts(RestraintTable.model_fields[entry.name])[2]
+                assert stated == (str(entry.default).lower() if entry.default is False else f"{entry.default:g}")
+    parameters = inspect.signature(identify).parameters
+    for name in ("size_error", "asymmetry", "clock", "first", "trend", "damping"):
+        assert facts(IdentifyTable.model_fields[name])[2] == str(parameters[name].default).lower()
+    assert float(facts(IdentifyTable.model_fields["tilt"])[2]) == pytest.approx(parameters["tilt"].default, abs=5e-5)
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("stiffness = -1.0", "stiffness must be a number >= 0 N/m"),
+        ("stiffness = 1.0\nhardening = 1.0", "hardening must be a number < 1, got"),
+    ],
+)
+def test_limits_of_restraints_have_their_unit(line, message):
+    """The unit in an error is that of the key, not that of the lengths of the file."""
+    text = f'units = "m"\n[block]\nwidth = 1\nheight = 3\n[[restraint]]\nkind = "tendon"\nx = 0.5\n{line}'
+    with pytest.raises(BodyFileError, match=message):
+        body_from_toml(text)
 
 
 def test_every_table_of_a_body_file_is_documented():

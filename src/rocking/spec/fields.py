@@ -14,6 +14,7 @@ from pydantic_core import CoreSchema, core_schema
 
 from rocking import checks
 from rocking.bodies.formats.schema import StrictTable
+from rocking.bodies.formats.schema import key as key  # noqa: PLC0414 - the tables import it from here
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.motions.filters import geometric
@@ -52,11 +53,6 @@ class Angle(str):
         return core_schema.no_info_wrap_validator_function(
             lambda value, check: value if isinstance(value, cls) else check(value), core_schema.str_schema()
         )
-
-
-def key(description: str, default: Any = None, **limits: Any) -> Any:
-    """Return a field with its meaning. The help of options and the manual show the meaning."""
-    return Field(default=default, description=description, **limits)
 
 
 def meaning_and_unit(description: str) -> tuple[str, str]:

@@ -10,30 +10,61 @@ from rocking.spec.fields import JobTable, Names, Positive, Seed, Text, key
 OF_FILES = {"format", "units", "time_step", "skip", "component", "vertical", "vertical_file", "process"}
 """Keys of a motion that are allowed for record files only."""
 
+_SOURCE = "one source is required"
+
 
 class FileKeys(JobTable):
     """Format, unit, time step and skipped lines of a record file."""
 
     format: Text | None = key(
-        "format of the record file from rocking record formats, default: detected from the content"
+        "format of the record file from rocking record formats, default: detected from the content",
+        allowed="a name from `rocking record formats`",
     )
-    units: Text | None = key("unit of a record file without unit: m/s2, cm/s2, mm/s2, gal, g, g/10, mg")
-    time_step: Positive | None = key("time step of a record file without time step [s]")
-    skip: int | None = key("number of lines to skip at the top of a text file", None, ge=0, le=100_000)
+    units: Text | None = key(
+        "unit of a record file without unit: m/s2, cm/s2, mm/s2, gal, g, g/10, mg",
+        usual="unit in the file; required without", allowed="a unit of the list",
+    )  # fmt: skip
+    time_step: Positive | None = key(
+        "time step of a record file without time step [s]", usual="time step in the file; required without"
+    )
+    skip: int | None = key(
+        "number of lines to skip at the top of a text file", None, usual="detected from the content", ge=0, le=100_000
+    )
 
 
 class MotionKeys(FileKeys):
     """Source, processing and scaling of motions."""
 
-    synthetic: Text | None = key("family of synthetic motions: firm-ground, soft-ground, point-source and more")
-    component: Text | None = key("name of the horizontal component in the file")
-    vertical: Text | None = key("name of the vertical component in the file")
-    vertical_file: Text | None = key("file of the vertical component, if separate")
-    process: Names | None = key("processing steps of a record: mean; bandpass:low=0.1,high=25; taper")
-    scale: float = key("scale factor of the ground acceleration [-]", 1.0)
-    seed: Seed | None = key("seed of the synthetic motions")
-    pga: Positive | None = key("peak ground acceleration of the scaled synthetic motions [m/s2]")
-    pgv: Positive | None = key("peak ground velocity of the scaled synthetic motions [m/s]")
+    synthetic: Text | None = key(
+        "family of synthetic motions: firm-ground, soft-ground, point-source and more", usual=_SOURCE,
+        allowed="a family of the page Names of values",
+    )  # fmt: skip
+    component: Text | None = key(
+        "name of the horizontal component in the file", usual="the only horizontal component; in studies all",
+        allowed="a component of the file",
+    )  # fmt: skip
+    vertical: Text | None = key(
+        "name of the vertical component in the file", usual="no vertical motion", allowed="a component of the file"
+    )
+    vertical_file: Text | None = key(
+        "file of the vertical component, if separate", usual="no vertical motion", allowed="a record file"
+    )
+    process: Names | None = key(
+        "processing steps of a record: mean; bandpass:low=0.1,high=25; taper", usual="no processing",
+        allowed="steps of the page Names of values",
+    )  # fmt: skip
+    scale: float = key(
+        "scale factor of the ground acceleration [-]",
+        1.0,
+        allowed="any except 0: a negative factor reverses the motion",
+    )
+    seed: Seed | None = key("seed of the synthetic motions", usual="0; in an inventory 1")
+    pga: Positive | None = key(
+        "peak ground acceleration of the scaled synthetic motions [m/s2]", usual="motions of the family, not scaled"
+    )
+    pgv: Positive | None = key(
+        "peak ground velocity of the scaled synthetic motions [m/s]", usual="motions of the family, not scaled"
+    )
 
     def _one_source(self, keys: dict[str, set[str]]) -> str:
         """Return the only source of the motion. Raise an error if a key belongs to another source."""
@@ -53,10 +84,12 @@ class MotionKeys(FileKeys):
 class OneMotionTable(MotionKeys):
     """One pulse, one record, or one motion of a synthetic family."""
 
-    pulse: Text | None = key("pulse, such as sine:amplitude=3,period=0.8")
-    record: Text | None = key("record file")
+    pulse: Text | None = key(
+        "pulse, such as sine:amplitude=3,period=0.8", usual=_SOURCE, allowed="a pulse of the page Names of values"
+    )
+    record: Text | None = key("record file", usual=_SOURCE, allowed="an existing file")
     member: Annotated[int, Field(ge=0, lt=10_000_000)] | None = key(
-        "index of the motion in the synthetic family, from 0"
+        "index of the motion in the synthetic family, from 0", usual="0"
     )
 
     @model_validator(mode="after")
@@ -74,9 +107,9 @@ class OneMotionTable(MotionKeys):
 class _Along(JobTable):
     """Motions of a 3D body along x, y and z (up)."""
 
-    x: OneMotionTable | None = key("motion along x")
-    y: OneMotionTable | None = key("motion along y")
-    z: OneMotionTable | None = key("motion along z, upwards")
+    x: OneMotionTable | None = key("motion along x", usual="no motion along x")
+    y: OneMotionTable | None = key("motion along y", usual="no motion along y")
+    z: OneMotionTable | None = key("motion along z, upwards", usual="no motion along z")
 
     @property
     def components(self) -> dict[str, OneMotionTable]:
@@ -102,19 +135,28 @@ class ComponentsTable(_Along, OneMotionTable):
 class MotionTable(_Along, MotionKeys):
     """Records, pulses or synthetic motions, or for a 3D body one motion along x, y and z (up)."""
 
-    records: Names | None = key("record files, folder of record files, pattern such as *.at2, or list in a .csv file")
+    records: Names | None = key(
+        "record files, folder of record files, pattern such as *.at2, or list in a .csv file", usual=_SOURCE,
+        allowed="existing files or folders",
+    )  # fmt: skip
     files: dict[Text, FileKeys] | None = key(
-        'options of single files, in place of the common options: one table per file name, as motions.files."a.txt"'
+        'options of single files, in place of the common options: one table per file name, as motions.files."a.txt"',
+        usual="common options of all files",
     )
-    pulse: Names | None = key("pulses, such as sine:amplitude=3,period=0.8")
+    pulse: Names | None = key(
+        "pulses, such as sine:amplitude=3,period=0.8", usual=_SOURCE, allowed="pulses of the page Names of values"
+    )
     count: Annotated[int, Field(ge=1, le=10_000_000)] | None = key(
-        "number of synthetic motions, or of records selected for a target spectrum"
+        "number of synthetic motions, or of records selected for a target spectrum",
+        usual="required with synthetic; all records with target",
     )
     target: Text | None = key(
-        "target spectrum for scaling: eurocode8:ag=0.25g,ground=C,type=1, asce7:sds=1g,sd1=0.6g,tl=8, or a file"
-    )
+        "target spectrum for scaling: eurocode8:ag=0.25g,ground=C,type=1, asce7:sds=1g,sd1=0.6g,tl=8, or a file",
+        usual="no scaling to a spectrum", allowed="a spectrum of the page Names of values, or an existing file",
+    )  # fmt: skip
     periods: Annotated[list[Positive], Field(min_length=2, max_length=2)] | None = key(
-        "shortest and longest period of the comparison with the target spectrum, default 0.1 and 2 [s]"
+        "shortest and longest period of the comparison with the target spectrum, default 0.1 and 2 [s]",
+        allowed="2 increasing numbers > 0",
     )
     mirrored: bool = key("add every record with reversed horizontal components", False)
 

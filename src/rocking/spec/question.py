@@ -37,8 +37,10 @@ class CampaignTable(JobTable):
 
     name: Text = key("name of the campaign", ...)
     kind: Annotated[str, AfterValidator(_kind_of_a_study)] = key("study", ...)
-    note: str | None = key("free text")
-    chunk: int | None = key("number of histories in one stored file", None, ge=1, le=1 << 22)
+    note: str | None = key("free text", allowed="any text: not used in computations")
+    chunk: int | None = key(
+        "number of histories in one stored file", None, usual="a number that suits the engine", ge=1, le=1 << 22
+    )
     seed: Seed = key("random seed", 0)
 
 

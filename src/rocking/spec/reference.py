@@ -3,21 +3,21 @@
 import re
 import types
 from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import fields as dataclass_fields
 from inspect import Parameter, getdoc, signature
 from itertools import chain
 from typing import Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel
-from pydantic.fields import FieldInfo
-from pydantic_core import PydanticUndefined
 
 from rocking.bodies.formats import schema
 from rocking.decision.inventory import Thresholds
-from rocking.dynamics import ContactSettings, PlaneSettings, SpaceSettings
+from rocking.dynamics import ContactSettings, PlaneSettings, Settings, SpaceSettings
 from rocking.spec.documents.identification import IdentifyTable, MeasurementTable
 from rocking.spec.documents.prediction import AssessTable, PredictTable
 from rocking.spec.documents.response import ResponseTable
 from rocking.spec.fields import JobTable, Values, limits_of, meaning_and_unit
+from rocking.spec.key_facts import LARGEST_SHOWN, as_code, facts
 from rocking.spec.motion_tables import ComponentsTable, FileKeys, MotionTable
 from rocking.spec.question import BodyQuestion, CampaignTable
 from rocking.spec.questions import questions
@@ -66,14 +66,20 @@ _BODIES: dict[str, type[BaseModel]] = {
 }
 
 
+_HOW_TO_READ = (
+    "The default is the value without the key. The default none has no effect. Numbers are finite. "
+    "The range any has no limit, for the stated reason.\n"
+)
+
+
 def reference() -> dict[str, str]:
     """Return the pages of the manual by name: keys of input files, names of values, and keys of body files."""
     keys = chain(*(_table(name, table, f" Used by {where}.") for name, (table, where) in _tables().items()))
     body_keys = chain(*(_table(name, table) for name, table in _BODIES.items()))
     return {
-        "input_files": "\n".join(["# Keys of input files\n", *keys]),
+        "input_files": "\n".join(["# Keys of input files\n", _HOW_TO_READ, *keys]),
         "names": "\n".join(["# Names of values\n", *_names()]),
-        "body_files": "\n".join(["# Keys of body files\n", *body_keys]),
+        "body_files": "\n".join(["# Keys of body files\n", _HOW_TO_READ, *body_keys]),
     }
 
 
@@ -181,7 +187,7 @@ def _facts_of_key(description: str, default: Any, annotation: Any, *, needed: bo
         "unit": unit,
         "description": meaning,
         "kind": _kind(annotation),
-        "usual": _as_code(default).strip("`"),
+        "usual": as_code(default).strip("`"),
         "needed": needed,
         "choices": list(_choices(annotation)),
     }
@@ -259,44 +265,40 @@ def _table(name: str, table: type[BaseModel], where: str = "") -> Iterator[str]:
     yield "| key | type | unit | default | range | meaning |"
     yield "|---|---|---|---|---|---|"
     for key, field in table.model_fields.items():
-        default = "required" if field.is_required() else _as_code(field.default)
-        if table is StudySettingsTable and not default:
-            default = _default_of_setting(key)
+        kind, unit, default, allowed, meaning = facts(field)
+        if table is StudySettingsTable:
+            default = _of_mechanics(_default_of_setting, key) if default == "none" else default
+            allowed = allowed or _of_mechanics(_range_of_setting, key)
         elif table is ThresholdsTable:
-            default = _as_code(getattr(Thresholds(), key))
-        choices = ", ".join(questions()) if (table, key) == (CampaignTable, "kind") else _kind(field.annotation)
-        meaning, unit = meaning_and_unit(field.description or "")
-        if '"' in unit:  # the name of a table
-            meaning, unit = f"{meaning} [{unit}]", ""
-        kind = choices.replace("list of number", "list of numbers").replace("whole number", "integer")
-        kind = kind.replace("true or false", "boolean")
-        row = (f"`{field.alias or key}`", kind, unit, default, _range(field), meaning)
-        yield f"| {' | '.join(row)} |"
+            default = as_code(getattr(Thresholds(), key))
+        elif (table, key) == (CampaignTable, "kind"):
+            allowed = ", ".join(questions())
+        yield f"| `{field.alias or key}` | {kind} | {unit} | {default} | {allowed} | {meaning} |"
     yield ""
 
 
-_HUGE = 1e9  # larger limits are limits of memory, not of the quantity
-_SIGNS = {"ge": ">=", "gt": ">", "le": "<=", "lt": "<"}
+_MECHANICS = {PlaneSettings: "", ContactSettings: " with friction", SpaceSettings: " in 3D"}
 
 
-def _range(field: FieldInfo) -> str:
-    """Return the limits of a number, such as "> 0, <= 1"."""
-    return ", ".join(f"{_SIGNS[name]} {limit:,.10g}" for name, limit in limits_of(field).items() if limit < _HUGE)
+def _of_mechanics(fact: Callable[[type[Settings], str], str], key: str) -> str:
+    """Return a fact of a setting for rocking, and where it differs, with friction and in 3D."""
+    texts = {suffix: fact(settings, key) for settings, suffix in _MECHANICS.items()}
+    return "; ".join(text + suffix for suffix, text in texts.items() if text and (not suffix or text != texts[""]))
 
 
-def _as_code(value: Any) -> str:
-    if value is None or value is PydanticUndefined or isinstance(value, JobTable):
+def _default_of_setting(settings: type[Settings], key: str) -> str:
+    return as_code(settings().stated.get(key))
+
+
+def _range_of_setting(settings: type[Settings], key: str) -> str:
+    """Return the limits of the check of a setting; empty without limits."""
+    check = next((entry.metadata["check"] for entry in dataclass_fields(settings) if entry.name == key), None)
+    limits = getattr(check, "keywords", {})
+    if "high" not in limits:
         return ""
-    return f"`{str(value).lower() if isinstance(value, bool) else value}`"
-
-
-def _default_of_setting(key: str) -> str:
-    """Return the default of a setting: one common value, or the values for rocking, friction and 3D."""
-    suffixes = {PlaneSettings: "", ContactSettings: " with friction", SpaceSettings: " in 3D"}
-    values = {suffix: settings().stated.get(key) for settings, suffix in suffixes.items() if key != "friction"}
-    if len({*values.values()}) == 1:
-        return _as_code(values[""])
-    return ", ".join(_as_code(value) + suffix for suffix, value in values.items() if value is not None)
+    low = f"{'>' if limits.get('open_low') else '>='} {limits['low']:,g}"
+    high = f"{'<' if limits.get('open_high') else '<='} {limits['high']:,g}"
+    return low if limits["high"] > LARGEST_SHOWN else f"{low}, {high}"
 
 
 def _kind(annotation: Any) -> str:

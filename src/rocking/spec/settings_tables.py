@@ -8,6 +8,7 @@ BOUNCE_LAW = (
     "definition of normal_restitution: ratio of normal velocities (newton), of impulses (poisson), or root of the "
     "ratio of energies (stronge)"
 )
+BOUNCE_RANGE = ">= 0, < 1"  # of all laws; the mechanics check the upper limit
 
 
 class SettingsTable(JobTable):
@@ -18,7 +19,7 @@ class SettingsTable(JobTable):
     rest_speed: float | None = key("dimensionless speed below which the body comes to rest [-]")
     most_events: int | None = key("largest number of impacts and contact changes of one history")
     longest_step: float | None = key("longest time step, as p times the time [-]")
-    order: int | None = key("order of the Taylor series")
+    order: int | None = key("order of the Taylor series", allowed="4, 6, 8; 2 to 40 in 3D")
     tolerance: float | None = key("largest size of the last two terms of a Taylor step [-]")
     engine: Literal["auto", "fast", "reference"] = key("computation engine", "auto")
 
@@ -30,6 +31,8 @@ class SettingsTable(JobTable):
 class StudySettingsTable(SettingsTable):
     """Settings of the integration, and of the contact in studies; the table of a response has its own contact keys."""
 
-    friction: float | None = key("coefficient of friction; enables sliding [-]", None, ge=0.0)
-    normal_restitution: float | None = key("with friction: coefficient of normal restitution [-]", None, ge=0.0)
+    friction: float | None = key("coefficient of friction; enables sliding [-]", None, usual="no sliding", ge=0.0)
+    normal_restitution: float | None = key(
+        "with friction: coefficient of normal restitution [-]", None, allowed=BOUNCE_RANGE, ge=0.0
+    )
     normal_restitution_law: Literal["newton", "poisson", "stronge"] | None = key(BOUNCE_LAW)

@@ -10,10 +10,25 @@ from rocking.errors import InvalidValueError
 Positive = Annotated[float, Field(gt=0.0)]
 Cut = Annotated[float, Field(ge=0.0)]
 Mass = Annotated[float, Field(gt=0.0, le=1e36)]
+Fraction = Annotated[float, Field(ge=0.0, le=1.0)]
+Hardening = Annotated[float, Field(ge=0.0, lt=1.0)]
+Exponent = Annotated[float, Field(ge=0.05, le=5.0)]
 Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
 Ring = Annotated[list[Pair], Field(min_length=3)]
 UnitName = Literal["m", "cm", "mm", "ft", "in"]
 _FILE_UNIT = "[unit of the file]"
+
+
+def key(
+    description: str, default: Any = None, *, usual: str = "", allowed: str = "", unit: str = "", **limits: Any
+) -> Any:
+    """Return a field with its meaning. The help of options and the manual show the meaning.
+
+    The manual also shows `usual`, the value without the key, `allowed`, and `unit`, where types and limits lack them.
+    """
+    facts = {"usual": usual, "allowed": allowed, "unit": unit}
+    stated: dict[str, Any] = {name: text for name, text in facts.items() if text}
+    return Field(default=default, description=description, json_schema_extra=stated or None, **limits)
 
 
 class StrictTable(BaseModel):
@@ -41,11 +56,14 @@ class StrictTable(BaseModel):
 class KnownTable(StrictTable):
     """Known mass, centre of mass and moment of inertia."""
 
-    mass: Mass | None = Field(None, description="known mass, in place of densities [kg]")
-    centre: Pair | None = Field(
-        None, description="known centre of mass (x, y), of a block from its lower left corner [unit of the file]"
+    mass: Mass | None = key("known mass, in place of densities [kg]", usual="density x volume")
+    centre: Pair | None = key(
+        "known centre of mass (x, y), of a block from its lower left corner [unit of the file]",
+        usual="computed from shape and densities", allowed="2 numbers, a point inside the body",
+    )  # fmt: skip
+    moment_of_inertia: Positive | None = key(
+        "known polar moment about the centre of mass [kg m2]", usual="computed from shape and densities"
     )
-    moment_of_inertia: Positive | None = Field(None, description="known polar moment about the centre of mass [kg m2]")
 
 
 class ShapeTable(KnownTable):
@@ -53,8 +71,9 @@ class ShapeTable(KnownTable):
 
     depth: Positive | None = Field(None, description="depth, across the motion, default 1 m [unit of the file]")
     density: Positive | None = Field(None, description="density, default 2400 [kg/m3]")
-    feet: Pair | None = Field(
-        None, description="positions of the left and right foot, default: ends of the base [unit of the file]"
+    feet: Pair | None = key(
+        "positions of the left and right foot, default: ends of the base [unit of the file]",
+        allowed="2 increasing numbers within the base",
     )
 
 
@@ -99,9 +118,10 @@ class TrapezoidTable(ShapeTable):
     base: Positive = Field(description="width at the ground [unit of the file]")
     top: Positive = Field(description="width at the top [unit of the file]")
     height: Positive = Field(description="height [unit of the file]")
-    lean: float = Field(
-        0.0, description="offset of the middle of the top to the right of the middle of the base [unit of the file]"
-    )
+    lean: float = key(
+        "offset of the middle of the top to the right of the middle of the base [unit of the file]", 0.0,
+        allowed="any with the centre of mass between the feet",
+    )  # fmt: skip
 
 
 class EllipseTable(ShapeTable):
@@ -119,17 +139,27 @@ class RegularPolygonTable(ShapeTable):
     radius: Positive = Field(description="radius from the centre to a corner [unit of the file]")
 
 
+_SOURCE = "one of outline, wkt, geojson, dxf is required"
+_IN_FOLDER = "a file in the folder of the body file or below"
+
+
 class RegionTable(StrictTable):
     """A polygon, or the polygons of a text or a file."""
 
-    outline: Ring | None = Field(None, description="corners, clockwise or counter-clockwise [unit of the file]")
-    holes: list[Ring] | None = Field(None, description="outlines of holes [unit of the file]")
-    wkt: str | None = Field(None, description="POLYGON or MULTIPOLYGON as text")
-    geojson: str | None = Field(None, description="GeoJSON file, relative to the body file")
-    dxf: str | None = Field(None, description="DXF drawing, relative to the body file")
-    units: UnitName | None = Field(None, description="unit of the text or file, if different from the body file")
-    layers: dict[str, Positive] | None = Field(None, description="densities by layer of the drawing [kg/m3]")
-    density: Positive | None = Field(None, description="density of this region [kg/m3]")
+    outline: Ring | None = key(
+        "corners, clockwise or counter-clockwise [unit of the file]", usual=_SOURCE, allowed="3 or more points (x, y)"
+    )
+    holes: list[Ring] | None = key(
+        "outlines of holes [unit of the file]", allowed="outlines of 3 or more points (x, y) inside the region"
+    )
+    wkt: str | None = key("POLYGON or MULTIPOLYGON as text", usual=_SOURCE, allowed="valid polygons")
+    geojson: str | None = key("GeoJSON file, relative to the body file", usual=_SOURCE, allowed=_IN_FOLDER)
+    dxf: str | None = key("DXF drawing, relative to the body file", usual=_SOURCE, allowed=_IN_FOLDER)
+    units: UnitName | None = key("unit of the text or file, if different from the body file", usual="unit of the file")
+    layers: dict[str, Positive] | None = key(
+        "densities by layer of the drawing [kg/m3]", usual="all layers with `density`", allowed="layers = numbers > 0"
+    )
+    density: Positive | None = key("density of this region [kg/m3]", usual="2400")
 
     @model_validator(mode="after")
     def _one_source(self) -> "RegionTable":
@@ -149,22 +179,33 @@ class SectionTable(KnownTable):
     region: Annotated[list[RegionTable], Field(min_length=1)] = Field(
         description="regions, one table [[section.region]] per region"
     )
-    depth: Positive | None = Field(None, description="depth out of the plane [unit of the file]")
-    feet: Pair | None = Field(None, description="positions of the left and right foot [unit of the file]")
-    ground: float = Field(0.0, description="height of the ground [unit of the file]")
+    depth: Positive | None = key("depth out of the plane [unit of the file]", usual="1 m")
+    feet: Pair | None = key(
+        "positions of the left and right foot [unit of the file]", usual="ends of the base",
+        allowed="2 increasing numbers within the base",
+    )  # fmt: skip
+    ground: float = key(
+        "height of the ground [unit of the file]", 0.0, allowed="the height of the lowest corner of the section"
+    )
 
 
 class MassPointsTable(StrictTable):
     """Points, masses, feet and contact intervals."""
 
-    points: Annotated[list[Pair], Field(min_length=1)] = Field(
-        description="positions (x, y) of the points [unit of the file]"
+    points: Annotated[list[Pair], Field(min_length=1)] = key(
+        "positions (x, y) of the points [unit of the file]", ..., allowed="1 or more points (x, y)"
     )
-    masses: Annotated[list[Mass], Field(min_length=1)] = Field(description="masses of the points [kg]")
-    feet: Pair = Field(description="positions of the left and right foot [unit of the file]")
-    contact: list[Pair] | None = Field(
-        None, description="contact intervals of the base with the ground [unit of the file]"
+    masses: Annotated[list[Mass], Field(min_length=1)] = key(
+        "masses of the points [kg]", ..., allowed="one number > 0 per point"
     )
+    feet: Pair = key("positions of the left and right foot [unit of the file]", ..., allowed="2 increasing numbers")
+    contact: list[Pair] | None = key(
+        "contact intervals of the base with the ground [unit of the file]", usual="from foot to foot",
+        allowed="intervals [left, right] with left < right",
+    )  # fmt: skip
+
+
+_OF_STIFFNESS = "stiffness in its place"
 
 
 class RestraintTable(StrictTable):
@@ -173,48 +214,60 @@ class RestraintTable(StrictTable):
     kind: Literal["tendon", "viscous_damper", "friction_damper", "fuse", "spring"] = Field(
         description="kind of the restraint"
     )
-    name: str | None = Field(None, description="name in results, default: kind and number")
-    x: float | None = Field(None, description="position on the base, x as for the feet [unit of the file]")
-    length: Cut | None = Field(None, description="distance of the anchor below the base at x [unit of the file]")
-    ground: Pair | None = Field(None, description="fixed point (x, z) on the ground; replaces x [unit of the file]")
-    point: Pair | None = Field(None, description="attachment point (x, z) on the upright body [unit of the file]")
-    stiffness: Cut | None = Field(None, description="tendon, fuse, spring: stiffness [N/m]")
-    area: Positive | None = Field(None, description="tendon: cross section [m2]")
-    modulus: Positive | None = Field(None, description="tendon: modulus of elasticity [Pa]")
-    free_length: Positive | None = Field(None, description="tendon: length between the anchors [unit of the file]")
-    prestress: Cut | None = Field(None, description="tendon: tensile force while the body is upright [N]")
-    loss: Cut | None = Field(None, description="tendon: fraction of the prestress lost before the motion [-]")
-    yield_force: Positive | None = Field(None, description="tendon, fuse: largest elastic force [N]")
-    hardening: Cut | None = Field(None, description="tendon, fuse: stiffness after yielding / stiffness [-]")
-    rupture_elongation: Positive | None = Field(
-        None, description="tendon: elongation from the prestressed state at rupture [unit of the file]"
+    name: str | None = key("name in results, default: kind and number", allowed="any text: a label of results")
+    x: float | None = key(
+        "position on the base, x as for the feet [unit of the file]", usual="x, or ground and point, is required",
+        allowed="any: also outside the base",
+    )  # fmt: skip
+    length: Cut | None = key("distance of the anchor below the base at x [unit of the file]", usual="0")
+    ground: Pair | None = key(
+        "fixed point (x, z) on the ground; replaces x [unit of the file]", usual="x, or ground and point, is required"
     )
-    stroke: Positive | None = Field(None, description="fuse: elongation at fracture [unit of the file]")
-    tension_only: bool | None = Field(None, description="fuse: true for a bar that buckles without force")
-    coefficient: Cut | None = Field(None, description="viscous_damper: coefficient c [N (s/m)^a]")
-    exponent: Positive | None = Field(None, description="viscous_damper: exponent a, default 1 [-]")
-    slip_force: Cut | None = Field(None, description="friction_damper: slip force [N]")
-    gap: Cut | None = Field(None, description="spring: elongation without force [unit of the file]")
-    action: Literal["both", "tension", "compression"] | None = Field(None, description="spring: direction of the force")
+    point: Pair | None = key(
+        "attachment point (x, z) on the upright body [unit of the file]", usual="x, or ground and point, is required"
+    )
+    stiffness: Cut | None = key(
+        "tendon, fuse, spring: stiffness [N/m]", usual="required; of a tendon or area, modulus and free_length"
+    )
+    area: Positive | None = key("tendon: cross section [m2]", usual=_OF_STIFFNESS)
+    modulus: Positive | None = key("tendon: modulus of elasticity [Pa]", usual=_OF_STIFFNESS)
+    free_length: Positive | None = key("tendon: length between the anchors [unit of the file]", usual=_OF_STIFFNESS)
+    prestress: Cut | None = key("tendon: tensile force while the body is upright [N]", usual="0")
+    loss: Fraction | None = key("tendon: fraction of the prestress lost before the motion [-]", usual="0")
+    yield_force: Positive | None = key("tendon, fuse: largest elastic force [N]", usual="elastic without limit")
+    hardening: Hardening | None = key("tendon, fuse: stiffness after yielding / stiffness [-]", usual="0")
+    rupture_elongation: Positive | None = key(
+        "tendon: elongation from the prestressed state at rupture [unit of the file]", usual="no rupture"
+    )
+    stroke: Positive | None = key("fuse: elongation at fracture [unit of the file]", usual="no fracture")
+    tension_only: bool | None = key("fuse: true for a bar that buckles without force", usual="false")
+    coefficient: Cut | None = key("viscous_damper: coefficient c [N (s/m)^a]", usual="required of a viscous_damper")
+    exponent: Exponent | None = key("viscous_damper: exponent a, default 1 [-]")
+    slip_force: Cut | None = key("friction_damper: slip force [N]", usual="required of a friction_damper")
+    gap: Cut | None = key("spring: elongation without force [unit of the file]", usual="0")
+    action: Literal["both", "tension", "compression"] | None = key("spring: direction of the force", usual="both")
 
 
 LENGTHS_OF_RESTRAINTS = ("x", "length", "ground", "point", "free_length", "rupture_elongation", "stroke", "gap")
 """Keys of `RestraintTable` in the unit of the file."""
 
 
+_ONE_BODY = "one table of the body is required"
+
+
 class BodyFile(StrictTable):
     """A body file: a unit, and one table of the body."""
 
     units: UnitName = Field(description="unit of all lengths")
-    name: str | None = Field(None, description="name of the body")
-    note: str | None = Field(None, description="free text")
-    block: BlockTable | None = Field(None, description="rectangular block")
-    trapezoid: TrapezoidTable | None = Field(None, description="trapezoid")
-    ellipse: EllipseTable | None = Field(None, description="ellipse")
-    regular_polygon: RegularPolygonTable | None = Field(None, description="regular polygon")
-    section: SectionTable | None = Field(None, description="section of one or more polygons")
-    mass_points: MassPointsTable | None = Field(None, description="body of mass points")
-    restraint: list[RestraintTable] | None = Field(None, description="restraints, one table per restraint")
+    name: str | None = key("name of the body", allowed="any text: a label of results")
+    note: str | None = key("free text", allowed="any text: not used in computations")
+    block: BlockTable | None = key("rectangular block", usual=_ONE_BODY)
+    trapezoid: TrapezoidTable | None = key("trapezoid", usual=_ONE_BODY)
+    ellipse: EllipseTable | None = key("ellipse", usual=_ONE_BODY)
+    regular_polygon: RegularPolygonTable | None = key("regular polygon", usual=_ONE_BODY)
+    section: SectionTable | None = key("section of one or more polygons", usual=_ONE_BODY)
+    mass_points: MassPointsTable | None = key("body of mass points", usual=_ONE_BODY)
+    restraint: list[RestraintTable] | None = key("restraints, one table per restraint")
 
     @classmethod
     def _unknown(cls, key: str) -> InvalidValueError:
@@ -301,33 +354,37 @@ class EllipsoidTable(BoxTable):
 class ExtrusionTable(StrictTable):
     """A vertical extrusion of a plan outline with holes, from z = 0."""
 
-    outline: Ring = Field(description="corners of the plan [unit of the file]")
+    outline: Ring = key("corners of the plan [unit of the file]", ..., allowed="3 or more points (x, y)")
     height: Positive = Field(description="height [unit of the file]")
-    holes: list[Ring] | None = Field(None, description="outlines of holes [unit of the file]")
+    holes: list[Ring] | None = key(
+        "outlines of holes [unit of the file]", allowed="outlines of 3 or more points (x, y) inside the plan"
+    )
 
 
 class RevolutionTable(StrictTable):
     """A profile of points (radius, height) rotated about the z axis."""
 
-    profile: Annotated[list[Pair], Field(min_length=2)] = Field(
-        description="points (radius, height), from bottom to top [unit of the file]"
-    )
+    profile: Annotated[list[Pair], Field(min_length=2)] = key(
+        "points (radius, height), from bottom to top [unit of the file]", ...,
+        allowed="2 or more points, radii >= 0, the last above the first",
+    )  # fmt: skip
 
 
 class MeshTable(StrictTable):
     """A surface mesh from a file."""
 
-    file: str = Field(description="STL, OBJ, PLY, GLB or XYZ file, relative to the body file")
-    units: UnitName | None = Field(None, description="unit of the mesh, if different from the body file")
-    up: Literal["z", "y"] | Triple = Field("z", description="axis or direction of the mesh that points upwards")
-    weld_tolerance: Positive | None = Field(
-        None, description="largest distance of corners that are merged [unit of the file]"
-    )
+    file: str = key("STL, OBJ, PLY, GLB or XYZ file, relative to the body file", ..., allowed=_IN_FOLDER)
+    units: UnitName | None = key("unit of the mesh, if different from the body file", usual="unit of the file")
+    up: Literal["z", "y"] | Triple = key("axis or direction of the mesh that points upwards", "z")
+    weld_tolerance: Positive | None = key(
+        "largest distance of corners that are merged [unit of the file]",
+        usual="equal corners only; 1e-6 x size in an open surface",
+    )  # fmt: skip
     repair: Literal["none", "safe", "all"] = Field("safe", description="allowed repairs, which are reported")
     surface: Literal["faces", "wrap", "hull"] = Field(
         "faces", description="surface of the body: faces of the mesh, skin around its points, or convex hull"
     )
-    wall: Positive | None = Field(None, description="wall thickness of a hollow body [unit of the file]")
+    wall: Positive | None = key("wall thickness of a hollow body [unit of the file]", usual="a solid body")
     inner_parts: Literal["refuse", "solid", "cavity"] = Field(
         "refuse", description="treatment of closed parts inside another part with the same orientation"
     )
@@ -336,25 +393,31 @@ class MeshTable(StrictTable):
 class TurnTable(StrictTable):
     """A rotation about an axis through the origin, counter-clockwise against the axis direction."""
 
-    axis: Triple = Field(description="direction of the rotation axis")
-    degrees: float = Field(description="rotation angle [degrees]")
+    axis: Triple = key("direction of the rotation axis", ..., allowed="3 numbers, not all zero")
+    degrees: float = key("rotation angle [degrees]", ..., allowed="any: full turns are allowed")
+
+
+_ONE_SHAPE = "one shape is required"
 
 
 class PartTable(StrictTable):
     """A part: exactly one shape of one material, with rotations and a translation."""
 
-    box: BoxTable | None = Field(None, description="box")
-    cylinder: UprightTable | None = Field(None, description="cylinder")
-    cone: UprightTable | None = Field(None, description="cone")
-    frustum: FrustumTable | None = Field(None, description="frustum of a cone")
-    sphere: SphereTable | None = Field(None, description="sphere, optionally with horizontal cuts")
-    ellipsoid: EllipsoidTable | None = Field(None, description="ellipsoid, optionally with horizontal cuts")
-    extrusion: ExtrusionTable | None = Field(None, description="vertical extrusion of a plan outline")
-    revolution: RevolutionTable | None = Field(None, description="body of revolution about the z axis")
-    mesh: MeshTable | None = Field(None, description="surface mesh from a file")
-    density: Positive | None = Field(None, description="density of this part [kg/m3]")
-    turned: list[TurnTable] | None = Field(None, description="rotations of the part, in this order")
-    at: Triple | None = Field(None, description="position of the part origin after the rotations [unit of the file]")
+    box: BoxTable | None = key("box", usual=_ONE_SHAPE)
+    cylinder: UprightTable | None = key("cylinder", usual=_ONE_SHAPE)
+    cone: UprightTable | None = key("cone", usual=_ONE_SHAPE)
+    frustum: FrustumTable | None = key("frustum of a cone", usual=_ONE_SHAPE)
+    sphere: SphereTable | None = key("sphere, optionally with horizontal cuts", usual=_ONE_SHAPE)
+    ellipsoid: EllipsoidTable | None = key("ellipsoid, optionally with horizontal cuts", usual=_ONE_SHAPE)
+    extrusion: ExtrusionTable | None = key("vertical extrusion of a plan outline", usual=_ONE_SHAPE)
+    revolution: RevolutionTable | None = key("body of revolution about the z axis", usual=_ONE_SHAPE)
+    mesh: MeshTable | None = key("surface mesh from a file", usual=_ONE_SHAPE)
+    density: Positive | None = key("density of this part [kg/m3]", usual="2400")
+    turned: list[TurnTable] | None = key("rotations of the part, in this order", usual="no rotation")
+    at: Triple | None = key(
+        "position of the part origin after the rotations [unit of the file]", usual="no translation",
+        allowed="3 numbers, each at most 1e8 x the size of the part",
+    )  # fmt: skip
 
     @model_validator(mode="after")
     def _one_shape(self) -> "PartTable":
@@ -372,24 +435,33 @@ class SolidTable(StrictTable):
     part: Annotated[list[PartTable], Field(min_length=1, max_length=MOST_PARTS)] = Field(
         description="parts, one table [[solid.part]] per part"
     )
-    base: Annotated[list[Pair], Field(min_length=3)] | None = Field(
-        None, description="points (x, y) of the base, default: all corners on the ground [unit of the file]"
+    base: Annotated[list[Pair], Field(min_length=3)] | None = key(
+        "points (x, y) of the base, default: all corners on the ground [unit of the file]",
+        allowed="3 or more points (x, y)",
     )
-    ground: float | None = Field(None, description="height of the ground [unit of the file]")
-    base_tolerance: Positive | None = Field(
-        None, description="largest height of base corners above the ground [unit of the file]"
+    ground: float | None = key(
+        "height of the ground [unit of the file]", usual="height of the lowest point",
+        allowed="the height of the lowest point of the body",
+    )  # fmt: skip
+    base_tolerance: Positive | None = key(
+        "largest height of base corners above the ground [unit of the file]", usual="1e-9 x size of the body"
     )
-    mass: Mass | None = Field(None, description="known mass, in place of densities [kg]")
-    centre: Triple | None = Field(None, description="known centre of mass (x, y, z) [unit of the file]")
-    inertia: Annotated[list[float | Triple], Field(min_length=3, max_length=3)] | None = Field(
-        None, description="known inertia about the centre of mass: three rows, or the moments about x, y, z [kg m2]"
-    )
+    mass: Mass | None = key("known mass, in place of densities [kg]", usual="density x volume")
+    centre: Triple | None = key(
+        "known centre of mass (x, y, z) [unit of the file]", usual="computed from shapes and densities",
+        allowed="3 numbers, a point inside the body",
+    )  # fmt: skip
+    inertia: Annotated[list[float | Triple], Field(min_length=3, max_length=3)] | None = key(
+        "known inertia about the centre of mass: three rows, or the moments about x, y, z [kg m2]",
+        usual="computed from shapes and densities",
+        allowed="3 numbers, or 3 rows of 3 numbers, possible for a rigid body",
+    )  # fmt: skip
 
 
 class SolidDocument(StrictTable):
     """A file of a 3D body: a unit and the table [solid]."""
 
     units: UnitName = Field(description="unit of all lengths")
-    name: str | None = Field(None, description="name of the body")
-    note: str | None = Field(None, description="free text")
+    name: str | None = key("name of the body", allowed="any text: a label of results")
+    note: str | None = key("free text", allowed="any text: not used in computations")
     solid: SolidTable = Field(description="parts, base and ground of the body")

@@ -45,7 +45,12 @@ _UNITS = {
     **dict.fromkeys(("density", "layers"), "kg/m3"),
     **dict.fromkeys(("mass", "masses"), "kg"),
     **dict.fromkeys(("moment_of_inertia", "inertia"), "kg m2"),
-    **dict.fromkeys(("sides", "axis"), ""),
+    **dict.fromkeys(("sides", "axis", "loss", "hardening", "exponent"), ""),
+    **dict.fromkeys(("prestress", "yield_force", "slip_force"), "N"),
+    "stiffness": "N/m",
+    "area": "m2",
+    "modulus": "Pa",
+    "coefficient": "N (s/m)^a",
     "degrees": "degree",
 }
 

@@ -6,6 +6,7 @@ from typing import Any, Literal
 from pydantic import Field, model_validator
 
 from rocking.errors import InvalidValueError
+from rocking.identification.readers.reader import KINDS
 from rocking.spec.fields import JobTable, Positive, Text, key
 from rocking.spec.motion_tables import OneMotionTable
 
@@ -13,35 +14,57 @@ from rocking.spec.motion_tables import OneMotionTable
 class MeasurementTable(JobTable):
     """Measurement of a freely rocking body: a file, or a folder with one file per trial."""
 
-    file: Text = Field(description="sound file, video, table of times or rotations, or folder of such files")
+    file: Text = key(
+        "sound file, video, table of times or rotations, or folder of such files", ..., allowed="an existing path"
+    )
     kind: str | None = key(
-        "kind of measurement: sound, video, times, rotation, displacement, angular velocity or acceleration"
+        "kind of measurement: sound, video, times, rotation, displacement, angular velocity or acceleration",
+        usual="from the extension, or the unit of the column", allowed=", ".join(KINDS),
+    )  # fmt: skip
+    column: str | None = key(
+        "name of the measured column, for a table with several columns", usual="the only column besides the times",
+        allowed="a name in the header",
+    )  # fmt: skip
+    unit: str | None = key(
+        "unit of the column, for a table without unit", usual="unit in the header", allowed="a unit of the kind"
     )
-    column: str | None = key("name of the measured column, for a table with several columns")
-    unit: str | None = key("unit of the column, for a table without unit")
-    time_column: str | None = key("name of the column of times, default: time")
-    time_unit: str | None = key("unit of the times, s or ms, for a table without unit")
-    height: Positive | None = key("height of the sensor above the base, for displacement or acceleration [m]")
+    time_column: str | None = key("name of the column of times, default: time", allowed="a name in the header")
+    time_unit: str | None = key(
+        "unit of the times, s or ms, for a table without unit", usual="unit in the header", allowed="s, ms"
+    )
+    height: Positive | None = key(
+        "height of the sensor above the base, for displacement or acceleration [m]",
+        usual="required for displacement or acceleration",
+    )
     region: list[float] | None = key(
-        "video: region of the body at rest as left, top, width, height, default: detected from the movement [pixels]"
+        "video: region of the body at rest as left, top, width, height, default: detected from the movement [pixels]",
+        allowed="4 numbers within the picture",
     )
-    frame_rate: Positive | None = key("frame rate of the camera, for a video in slow motion [1/s]")
+    frame_rate: Positive | None = key(
+        "frame rate of the camera, for a video in slow motion [1/s]", usual="frame rate of the file"
+    )
 
 
 class IdentifyTable(JobTable):
     """Standard deviations and options of an identification."""
 
-    size_error: float | None = key("relative standard deviation of the body dimensions, default 0.01 [-]")
+    size_error: float | None = key(
+        "relative standard deviation of the body dimensions, default 0.01 [-]", None, ge=0.0, le=0.2
+    )
     tilt: float | list[float] | None = key(
-        "standard deviation of the floor tilt, or [tilt, deviation], positive clockwise, default 0.0052 [rad]"
+        "standard deviation of the floor tilt, or [tilt, deviation], positive clockwise, default 0.0052 [rad]",
+        allowed="tilt >= -0.1, <= 0.1; deviation >= 0, <= 0.1",
     )
-    asymmetry: float | None = key("standard deviation of ln r on the right minus ln r on the left, default 0.06 [-]")
-    trend: bool | None = key("fit of a linear change of r with the impact velocity")
-    damping: bool | None = key("fit of a damping between impacts")
+    asymmetry: float | None = key(
+        "standard deviation of ln r on the right minus ln r on the left, default 0.06 [-]", None, ge=0.0, le=1.0
+    )
+    trend: bool | None = key("fit of a linear change of r with the impact velocity", usual="false")
+    damping: bool | None = key("fit of a damping between impacts", usual="false")
     clock: float | list[float] | None = key(
-        "with a motion: standard deviation of the time offset between both clocks, or [offset, deviation], 0.02 [s]"
-    )
-    first: Literal["left", "right"] | None = key("times: contact foot after the first impact")
+        "with a motion: standard deviation of the time offset between both clocks, or [offset, deviation], "
+        "default 0.02 [s]", allowed="any offset; deviation >= 0, <= 10",
+    )  # fmt: skip
+    first: Literal["left", "right"] | None = key("times: contact foot after the first impact", usual="right")
 
 
 class IdentificationDocument(JobTable):

@@ -13,28 +13,53 @@ from rocking.spec.settings_tables import StudySettingsTable
 class PredictTable(JobTable):
     """Uncertain inputs of a body: a number, [low, high], a sample of three or more numbers, or a distribution."""
 
-    restitution: Any = key('coefficient of restitution, model, "complementarity", or "measured" (default) [-]')
-    friction: Any = key("coefficient of friction, default [0.3, 0.8] [-]")
-    base: Any = key("distance of the feet from the edges of the base, default 0 to 2 % of the base width [m]")
-    centre: Any = key("scale factor of the height of the centre of mass, default [0.97, 1.03] [-]")
-    offset: Any = key("horizontal offset of the centre of mass, default up to 3 % of the half size of the body [m]")
-    level: Any = key('slope of the support [rad], or "floor" (default), "shelf", "pedestal", "road"')
-    polarity: Any = key("polarity: 1 as recorded, -1 reversed, default both with equal probability")
+    restitution: Any = key(
+        'coefficient of restitution, model, "complementarity", or "measured" (default) [-]', usual="measured",
+        allowed="numbers in [0, 10], or a name from `rocking models`",
+    )  # fmt: skip
+    friction: Any = key("coefficient of friction, default [0.3, 0.8] [-]", allowed=">= 0.01, <= 10")
+    base: Any = key(
+        "distance of the feet from the edges of the base, default 0 to 2 % of the base width [m]",
+        allowed=">= 0, <= 0.9 x half width; of a 3D body >= -0.25 x width, <= 0.5 x height",
+    )
+    centre: Any = key(
+        "scale factor of the height of the centre of mass, default [0.97, 1.03] [-]", allowed=">= 0.5, <= 1.5"
+    )
+    offset: Any = key(
+        "horizontal offset of the centre of mass, default up to 3 % of the half size of the body [m]",
+        allowed=">= -0.9 x half width, <= 0.9 x half width; of a 3D body up to its half size",
+    )
+    level: Any = key(
+        'slope of the support [rad], or "floor" (default), "shelf", "pedestal", "road"', usual="floor", unit="rad",
+        allowed=">= -0.5, <= 0.5, or a name",
+    )  # fmt: skip
+    polarity: Any = key(
+        "polarity: 1 as recorded, -1 reversed, default both with equal probability",
+        allowed="1, -1, or a sample of both",
+    )
     azimuth: Any = key(
         "azimuth of the body to the x component (3D or two components), where its direction is known; "
-        "default: unknown, sampled over all directions [rad]"
-    )
+        "default: unknown, sampled over all directions [rad]", allowed=">= -2 pi, <= 2 pi",
+    )  # fmt: skip
     axis: Annotated[list[float], Field(min_length=3, max_length=3)] | None = key(
-        "direction of the x component of the motion in the axes of the scan file, instead of azimuth"
+        "direction of the x component of the motion in the axes of the scan file, instead of azimuth",
+        usual="azimuth in its place",
     )
     model_error: Any = key(
         'factors on uplift acceleration and energy barrier: class of the body, "machined" (default of blocks), '
         '"object" (default of other plane bodies), "natural" (default of scans), "off", a file of '
-        "validate-predictions --update, or a table with mean and covariance of ln of both factors [-]"
-    )
+        "validate-predictions --update, or a table with mean and covariance of ln of both factors [-]",
+        usual="class of the body", allowed="a class, off, an existing file, or a table",
+    )  # fmt: skip
     sliding_beyond: Positive = key("smallest sliding distance that counts as sliding [m]", 0.01)
-    pga: Text | None = key("peak ground acceleration of every scaled motion: 0.3g, 2.9m/s2")
-    count: int = key("number of sampled bodies for each motion, a power of two", 128, ge=4, le=1 << 20)
+    pga: Text | None = key(
+        "peak ground acceleration of every scaled motion: 0.3g, 2.9m/s2", usual="motions are not scaled",
+        unit="stated with the number", allowed="a number > 0 with unit",
+    )  # fmt: skip
+    count: int = key(
+        "number of sampled bodies for each motion, a power of two", 128, allowed="powers of two, >= 4, <= 1,048,576",
+        ge=4, le=1 << 20,
+    )  # fmt: skip
     contributions: bool = key("contributions of the inputs to the variance", True)
     seed: Seed = key("random seed", 0)
 
@@ -72,14 +97,20 @@ class PredictionDocument(PredictedBody):
         return self
 
 
+_LABEL = "any text: printed in the report, 1 to 200 characters"
+
+
 class AssessTable(JobTable):
     """Options of an assessment and of its report."""
 
-    restitutions: list[Any] | None = key("restitution models and coefficients to compare, default: all models")
+    restitutions: list[Any] | None = key(
+        "restitution models and coefficients to compare, default: all models",
+        allowed="names from `rocking models`, or numbers in [0, 10]",
+    )
     margin: Positive = key("required margin: scale factor of the motions for the retrofit measures [-]", 1.0)
-    project: Text | None = key("name of the project")
-    author: Text | None = key("author of the report")
-    date: Text | None = key("date of the report, default: today")
+    project: Text | None = key("name of the project", usual="not printed", allowed=_LABEL)
+    author: Text | None = key("author of the report", usual="not printed", allowed=_LABEL)
+    date: Text | None = key("date of the report, default: today", allowed=_LABEL)
 
 
 class AssessmentDocument(PredictionDocument):

@@ -9,7 +9,7 @@ from rocking.errors import InvalidValueError
 from rocking.spec.fields import Angle, JobTable, key
 from rocking.spec.motion_tables import ComponentsTable
 from rocking.spec.restitution_tables import RestitutionTable
-from rocking.spec.settings_tables import BOUNCE_LAW, SettingsTable
+from rocking.spec.settings_tables import BOUNCE_LAW, BOUNCE_RANGE, SettingsTable
 
 
 class ResponseTable(JobTable):
@@ -17,17 +17,21 @@ class ResponseTable(JobTable):
 
     initial_rotation: float | Angle | None = key(
         "without motion: initial rotation / slenderness angle [-], or with unit: 5deg, 0.1rad; > 0 to the right (+x), "
-        "< 0 to the left"
+        "< 0 to the left", unit="slenderness angle, rad or deg",
+        allowed="any number: > 1 overturns; an angle in (-90, 90) deg",
+    )  # fmt: skip
+    friction: float | None = key("coefficient of friction; enables sliding [-]", None, usual="no sliding", gt=0.0)
+    normal_restitution: float | None = key(
+        "with friction: coefficient of normal restitution [-]", None, usual="0", allowed=BOUNCE_RANGE, ge=0.0
     )
-    friction: float | None = key("coefficient of friction; enables sliding [-]", None, gt=0.0)
-    normal_restitution: float | None = key("with friction: coefficient of normal restitution [-]", None, ge=0.0)
-    normal_restitution_law: Literal["newton", "poisson", "stronge"] | None = key(BOUNCE_LAW)
+    normal_restitution_law: Literal["newton", "poisson", "stronge"] | None = key(BOUNCE_LAW, usual="newton")
     start_height: float | None = key(
-        "with friction: initial height of the lowest point above the ground [m]", None, ge=0.0
+        "with friction: initial height of the lowest point above the ground [m]", None, usual="0", ge=0.0
     )
     start_velocity: list[float] | None = key(
-        "with friction: initial velocity of the lowest point, (x, up) of a 2D body, (x, y, up) of a 3D body [m/s]"
-    )
+        "with friction: initial velocity of the lowest point, (x, up) of a 2D body, (x, y, up) of a 3D body [m/s]",
+        usual="at rest", allowed="2 or 3 numbers",
+    )  # fmt: skip
     assumed_friction: float = Field(
         gt=0.0,
         default_factory=lambda: DEFAULT_FRICTION,

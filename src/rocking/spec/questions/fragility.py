@@ -33,6 +33,8 @@ _OF_ONE_KIND = {
     "fragility.tolerance": "incremental",
 }
 
+_MEASURES = "measures of the page Names of values"
+
 
 class ExportTable(JobTable):
     """Treatment of crossing curves, confidence intervals, and comparison of intensity measures."""
@@ -41,8 +43,13 @@ class ExportTable(JobTable):
         "treatment of crossing fragility curves", "keep-uplift"
     )
     bootstrap: Annotated[int, Field(ge=99, le=100_000)] | Literal[0] = key("number of bootstrap samples", 0)
-    ims: Annotated[list[Text], Field(min_length=1)] | None = key("intensity measures of the comparison")
-    columns: list[Text] | None = key("metadata columns for the sufficiency test of the comparison")
+    ims: Annotated[list[Text], Field(min_length=1)] | None = key(
+        "intensity measures of the comparison", usual="default measures, and im", allowed=_MEASURES
+    )
+    columns: list[Text] | None = key(
+        "metadata columns for the sufficiency test of the comparison", usual="magnitude, ln distance_km where stated",
+        allowed="names of metadata of the records, or ln NAME",
+    )  # fmt: skip
 
 
 def _one_state(value: Any, validate: ValidatorFunctionWrapHandler) -> Any:
@@ -60,14 +67,19 @@ def _one_state(value: Any, validate: ValidatorFunctionWrapHandler) -> Any:
 class FragilityTable(JobTable):
     """Intensity measure, intensity levels and limit states of a fragility analysis."""
 
-    im: Text = key("intensity measure: pga, pgv, arias, sa(0.5) and more", "pga")
-    levels: Numbers | None = key("intensity levels, in the unit of the intensity measure")
+    im: Text = key("intensity measure: pga, pgv, arias, sa(0.5) and more", "pga", allowed=_MEASURES)
+    levels: Numbers | None = key(
+        "intensity levels, in the unit of the intensity measure", usual="required; not allowed for kind = cloud",
+        unit="unit of im", allowed="increasing numbers > 0",
+    )  # fmt: skip
     limit_states: list[Annotated[Positive | Literal["rocking", "overturning"], WrapValidator(_one_state)]] = key(
         "limit states: rotation / slenderness angle; rocking and overturning are included",
-        [0.5],
+        [0.5], allowed="numbers > 0, rocking, overturning",
+    )  # fmt: skip
+    tolerance: float | None = key(
+        "relative width of the last intervals: width / level [-]", None, usual="1e-8", ge=0.0, le=0.1
     )
-    tolerance: float | None = key("relative width of the last intervals: width / level [-]", None, ge=0.0, le=0.1)
-    scale: Positive | None = key("scale factor of all motions of a cloud analysis [-]")
+    scale: Positive | None = key("scale factor of all motions of a cloud analysis [-]", usual="1")
 
 
 class AnalysisQuestion(BodyQuestion):

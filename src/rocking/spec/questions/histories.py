@@ -18,7 +18,11 @@ if TYPE_CHECKING:
 class HistoriesTable(JobTable):
     """Scale factors of the histories of a campaign."""
 
-    scales: Numbers = Field(default_factory=lambda: Values(values=[1.0]), description="scale factors of motions [-]")
+    scales: Numbers = Field(
+        default_factory=lambda: Values(values=[1.0]),
+        description="scale factors of motions [-]",
+        json_schema_extra={"usual": "1", "allowed": "any numbers: a negative factor reverses the motion"},
+    )
 
 
 class HistoriesQuestion(BodyQuestion):

@@ -22,30 +22,57 @@ if TYPE_CHECKING:
 class ThresholdsTable(JobTable):
     """Limits between the ratings green, amber and red."""
 
-    rocking: float | None = key("green: largest rotation / slenderness angle under most motions [-]")
-    overturning_green: float | None = key("green: largest fraction of motions that overturn the object [-]")
-    overturning_red: float | None = key("red: smallest fraction of motions that overturn the object [-]")
-    level: float | None = key("confidence level of the intervals of the fractions [-]")
-    low_consequence: float | None = key("multiplier of both fractions for an object of low consequence [-]")
-    high_consequence: float | None = key("multiplier of both fractions for an object of high consequence [-]")
+    rocking: float | None = key(
+        "green: largest rotation / slenderness angle under most motions [-]", allowed="> 0, <= 1"
+    )
+    overturning_green: float | None = key(
+        "green: largest fraction of motions that overturn the object [-]", allowed="> 0, < 1"
+    )
+    overturning_red: float | None = key(
+        "red: smallest fraction of motions that overturn the object [-]", allowed=">= overturning_green, <= 1"
+    )
+    level: float | None = key("confidence level of the intervals of the fractions [-]", allowed=">= 0.5, < 1")
+    low_consequence: float | None = key(
+        "multiplier of both fractions for an object of low consequence [-]", allowed=">= 1, <= 100"
+    )
+    high_consequence: float | None = key(
+        "multiplier of both fractions for an object of high consequence [-]", allowed="> 0, <= 1"
+    )
+
+
+_LEVEL = "records are not scaled; required for synthetic motions"
 
 
 class InventoryTable(JobTable):
     """A list of objects, and the intensity of the ground motions."""
 
     objects: Text = key(
-        "list of objects as .xlsx, .ods or CSV: name, width, depth, height and more, with units in the header", ...
+        "list of objects as .xlsx, .ods or CSV: name, width, depth, height and more, with units in the header", ...,
+        allowed="an existing file",
+    )  # fmt: skip
+    encoding: Text | None = key(
+        "encoding of a CSV file, such as cp1252, default: detected from the file", allowed="a codec of Python"
     )
-    encoding: Text | None = key("encoding of a CSV file, such as cp1252, default: detected from the file")
     map_columns: Text | dict[str, str] | None = key(
         'meaning of columns by title: "Objekt=name, Maß B=width_cm, Rahmenbreite=". An empty meaning ignores the '
-        "column. Quote a title with a comma: '\"Höhe, gesamt\"=height_cm'"
+        "column. Quote a title with a comma: '\"Höhe, gesamt\"=height_cm'",
+        usual="meaning from the titles", allowed="title=column pairs",
+    )  # fmt: skip
+    pga: Text | None = key(
+        "peak ground acceleration of every motion: 0.3g, 2.9m/s2", usual=_LEVEL, unit="stated with the number",
+        allowed="a number > 0 with unit",
+    )  # fmt: skip
+    pgv: Text | None = key(
+        "peak ground velocity of every motion, in place of pga: 25cm/s, 0.25m/s", usual=_LEVEL,
+        unit="stated with the number", allowed="a number > 0 with unit",
+    )  # fmt: skip
+    language: Text | None = key(
+        "language of the report: en, de, it, zh, default: language of the header of the list", allowed="en, de, it, zh"
     )
-    pga: Text | None = key("peak ground acceleration of every motion: 0.3g, 2.9m/s2")
-    pgv: Text | None = key("peak ground velocity of every motion, in place of pga: 25cm/s, 0.25m/s")
-    language: Text | None = key("language of the report: en, de, it, zh, default: language of the header of the list")
     thresholds: ThresholdsTable = Field(
-        default_factory=ThresholdsTable, description="limits between the ratings green, amber and red"
+        default_factory=ThresholdsTable,
+        description="limits between the ratings green, amber and red",
+        json_schema_extra={"usual": "defaults of its keys"},
     )
 
     @model_validator(mode="after")

@@ -21,15 +21,22 @@ if TYPE_CHECKING:
 class AxisTable(Values):
     """An axis of a map."""
 
-    axis: Text = key("quantity on the axis: frequency_ratio, pga, semi_diagonal and more", ...)
+    axis: Text = key(
+        "quantity on the axis: frequency_ratio, pga, semi_diagonal and more", ..., allowed="an axis of a map"
+    )
+
+
+_INCREASING = "a quantity of the page Names of values, and increasing values"
 
 
 class MapTable(JobTable):
     """The two axes of a map, and the refinement of its boundaries."""
 
-    x: AxisTable = key("horizontal axis: quantity, and values in SI units", ...)
-    y: AxisTable = key("vertical axis: quantity, and values in SI units", ...)
-    refine: int | None = key("number of refinements along boundaries, each halves the spacing", None, ge=0, le=12)
+    x: AxisTable = key("horizontal axis: quantity, and values in SI units", ..., unit="SI", allowed=_INCREASING)
+    y: AxisTable = key("vertical axis: quantity, and values in SI units", ..., unit="SI", allowed=_INCREASING)
+    refine: int | None = key(
+        "number of refinements along boundaries, each halves the spacing", None, usual="no refinement", ge=0, le=12
+    )
     boundary: Literal["verdict", "mode"] = key("boundaries of overturning only, or of all modes", "verdict")
     tolerance: float = key("relative width of the last intervals of the bisection [-]", 1e-10, ge=1e-15, le=0.1)
 

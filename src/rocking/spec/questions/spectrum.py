@@ -20,9 +20,11 @@ _LONGEST = 1e100  # longest period whose square does not overflow [s]
 class SpectrumTable(JobTable):
     """Blocks and scale factor of rocking spectra."""
 
-    slenderness_angles: Numbers = key("slenderness angles alpha = atan(b/h) [rad]", ...)
-    periods: Numbers = key("rocking periods 2 pi / p [s]", ...)
-    scale: float = key("scale factor of the ground acceleration [-]", 1.0)
+    slenderness_angles: Numbers = key(
+        "slenderness angles alpha = atan(b/h) [rad]", ..., allowed="increasing numbers > 0, < pi/2"
+    )
+    periods: Numbers = key("rocking periods 2 pi / p [s]", ..., allowed="increasing numbers > 0")
+    scale: float = key("scale factor of the ground acceleration [-]", 1.0, allowed=">= -1e6, <= 1e6")
 
 
 class SpectrumQuestion(StudyQuestion):
