@@ -32,7 +32,7 @@ class Periods {
             }
             const double norm = std::sqrt(fma(vector[0], vector[0], vector[1] * vector[1] / (p * p)));
             lane.growth[m] += std::log(norm);
-            // rest removes every difference: the next vector starts as a unit vector
+            // a body at rest: the difference between neighbouring orbits is zero, and a unit vector replaces it
             vector[0] = norm > 0.0 ? vector[0] / norm : 1.0 - m;
             vector[1] = norm > 0.0 ? vector[1] / norm : m * p;
         }

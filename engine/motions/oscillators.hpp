@@ -152,8 +152,9 @@ static void states_of(const double* a, std::size_t n, double step, const Complex
     }
 }
 
-// Largest displacement, velocity and absolute acceleration, one row per oscillator. `reach` is the largest of each for
-// a state of magnitude one, `parts` the number of parts of a step, and `points` the number of points in free vibration.
+// Largest displacement, velocity and absolute acceleration, one row per oscillator. `reach` contains the largest
+// values of these three quantities over all states of magnitude one. `parts` is the number of parts of a step, and
+// `points` the number of points in free vibration.
 static void peaks_of(const double* a, std::size_t n, double step, const Complex* rates, std::size_t count,
                      const double* reach, const std::int64_t* parts, double margin, std::int64_t points, double* peaks) {
     std::vector<double> re(n * kTogether), im(n * kTogether), push(n);

@@ -27,8 +27,9 @@ struct Pivot {
     Four gaps[3] = {}, ends[3] = {};
     double along = 0.0;                   // component of the arm along the edge
     Vec level, lever;                     // for an edge: part of the arm perpendicular to it, and axis x arm
-    // for the middle of an edge: force between its ends by gyroscopic moments, and the arm along the edge
-    double skew = 0.0, beside = 0.0;
+    // skew: products of inertia about the middle of an edge / mass; they cause different forces at both ends
+    // from_middle: distance along the edge from its middle to the projection of the centre of mass
+    double skew = 0.0, from_middle = 0.0;
     const double* kept = nullptr;         // moments after stage 2 of KED
 };
 
@@ -80,7 +81,7 @@ inline void equations(const Body& body, Pivot& p) {
         p.along = dot(p.axis, p.arm);
         p.level = p.arm - p.along * p.axis, p.lever = cross(p.axis, p.arm);
         p.skew = norm(cross(p.axis, 1.0 / body.mass * (body.about(p.at + 0.5 * p.length * p.axis) * p.axis)));
-        p.beside = std::fabs(p.along - 0.5 * p.length);
+        p.from_middle = std::fabs(p.along - 0.5 * p.length);
     }
 }
 

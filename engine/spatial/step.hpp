@@ -148,7 +148,7 @@ bool Run<D>::advance_on_edge(double angle) {
     // sum
     const double inverse = 1.0 / (step_.length * step_.length), fastest = std::fabs(rate) + strength;
     const double height = std::fabs(step_.c[0][2]) + fastest * norm(edge.level);
-    const double apart = edge.skew * (strength + fastest * fastest) * inverse + height * across + heavy * edge.beside;
+    const double apart = edge.skew * (strength + fastest * fastest) * inverse + height * across + heavy * edge.from_middle;
     if (2.0 * apart < edge.length * step_.least_normal) return true;
     spell_out();
     return ends_hold();

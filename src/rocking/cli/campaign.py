@@ -113,7 +113,7 @@ def export(
         ),
     ],
     restitution: Annotated[
-        str | None, typer.Option(help="Restitution model of the fragility or the intensity measures.")
+        str | None, typer.Option(help="Restitution model of the exported fragility curves or intensity measures.")
     ] = None,
     crossing_curves: Annotated[
         str | None,

@@ -63,7 +63,7 @@ def code_checks(
     synthetic: options.Family = None,
     count: Annotated[int | None, options.count(COUNT)] = None,
     seed: options.Seed = None,
-    im: Annotated[str, typer.Option(help="Intensity measure, see rocking fragility.")] = "pga/(g tan alpha)",
+    im: Annotated[str, typer.Option(help="Intensity measure, as for rocking fragility.")] = "pga/(g tan alpha)",
     levels: Annotated[
         str | None,
         typer.Option(help="Intensity levels: FIRST:LAST:COUNT or A,B,C. [default: unscaled; synthetic motions: 2]"),
@@ -71,7 +71,9 @@ def code_checks(
     restitution: options.Restitution = None,
     slenderness: Annotated[
         str | None,
-        typer.Option(help="Height over width, in place of --width: 4,5.", rich_help_panel=options.SIZE),
+        typer.Option(
+            help="Height over width, in place of --width; several values: 4,5,6.", rich_help_panel=options.SIZE
+        ),
     ] = None,
     sets: options.Set = None,
     friction: options.Friction = None,

@@ -43,7 +43,7 @@ def equilibria(
     density: options.Density = None,
     units: options.Units = None,
     min_barrier: Annotated[
-        str | None, typer.Option(help=r"Lowest energy barrier of a pose, or with unit: 2mm \[m, or --units].")
+        str | None, typer.Option(help=r"Ignore poses with a lower energy barrier, such as 2mm \[m, or --units].")
     ] = None,
     sets: options.Set = None,
     output: Annotated[list[str] | None, options.output(EXPORTS)] = None,

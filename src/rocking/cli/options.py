@@ -161,7 +161,9 @@ Restitutions = Annotated[
         autocompletion=completion.models,
     ),
 ]
-MeasuredRestitution = Annotated[str | None, typer.Option(help="Model or coefficient. [default: calibrated, sampled]")]
+MeasuredRestitution = Annotated[
+    str | None, typer.Option(help="Model or coefficient. [default: calibrated, with sampled coefficients]")
+]
 FRICTION_RANGE = 'a range: --set "predict.friction=[0.2,0.6]"'
 FrictionOfRange = Annotated[
     float | None,

@@ -308,7 +308,7 @@ def changed(body: Body, ballast: bool = False, /, *, out: float = 0.0, down: flo
     mass, inertia = body.mass, body.moment_of_inertia
     if ballast:
         mass, inertia = mass * (y + down) / y, inertia + mass * down * (y + down)
-    gyration = inertia / mass - x * (width - x)  # contribution of the height
+    gyration = inertia / mass - x * (width - x)  # from the vertical distribution of the mass
     height = max(body.local_box[3], y + 1.01 * max(gyration, y**2) / y)
     return Block(width=width, height=height, depth=1.0, mass=mass, centre=(x, y), moment_of_inertia=inertia)
 

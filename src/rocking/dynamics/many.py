@@ -77,9 +77,9 @@ def simulate_many(  # noqa: PLR0913 - independent options
         initial_rotation [rad] and initial_angular_velocity [rad/s].
 
         Without friction, the simulation of a plane body stops at the end of the ground motion. The energy at this time
-        determines the outcome and the peak of later half cycles; later impacts are not counted. ``still_rocking`` is
-        the state at the end of the ground motion. The attributes contain the engine, and the reasons for invalid 3D
-        bodies.
+        determines the outcome and the peak of later half cycles; later impacts are not counted. ``still_rocking``
+        is 1 if the body rocks at the end of the ground motion. The attributes contain the engine, and the reasons for
+        invalid 3D bodies.
 
     Raises
     ------

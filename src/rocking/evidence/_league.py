@@ -161,7 +161,7 @@ _PUBLISHED = (
 
 @dataclass(frozen=True, slots=True)
 class LeagueRow:
-    """Errors of one contender on measurements."""
+    """Errors of one model in the comparison with the measurements."""
 
     name: str  # name in the league
     model: RestitutionModel  # model with fitted values

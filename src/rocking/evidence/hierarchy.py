@@ -182,7 +182,7 @@ def _groups(data: DataSet) -> list[str]:
 
 
 def _shares(tree: dict[str, dict[str, dict[Any, list[int]]]]) -> list[tuple[float, ...]]:
-    """Return the nodes of the variance fractions. Levels that the rows cannot distinguish are not divided."""
+    """Return the nodes of the variance fractions. The variance is not divided between indistinguishable levels."""
     groups = [group for laboratory in tree.values() for group in laboratory.values()]
     has_groups = any(len(laboratory) > 1 for laboratory in tree.values())
     has_repeats = any(len(rows) > 1 for group in groups for rows in group.values())

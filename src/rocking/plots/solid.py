@@ -64,7 +64,7 @@ def solid_picture(solid: Solid, *, azimuth: float = -60.0, elevation: float = 18
 def energy_picture(
     result: SpatialRestitution, *, divisions: int = 16, azimuth: float = -60.0, elevation: float = 18.0
 ) -> "Figure":
-    """Draw the energy loss of a body in an impact: by unit, in a vertical slice, and over the height.
+    """Draw the energy loss of a body in an impact: of each cube, in a vertical slice, and over the height.
 
     Parameters
     ----------

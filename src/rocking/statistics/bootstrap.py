@@ -142,7 +142,7 @@ class BootstrapSample:
         return self._ends(of_study, of_repetitions, level, ends)
 
     def _ends(self, of_study: Pair, of_repetitions: Pair, level: float, ends: Ends) -> Pair:
-        """Return both ends by column, from values and errors of study and repetitions."""
+        """Return the ends of the intervals of all columns, from values and standard errors of study and repetitions."""
         kind = checks.one_of("ends", ends, get_args(Ends))
         distance = of_repetitions[0] if kind == "percentile" else of_repetitions[0] - of_study[0]
         distance = distance / of_repetitions[1] if kind == "studentised" else distance  # Eq. 210

@@ -73,7 +73,7 @@ def to_excel(
     others: str = ".parquet or .csv", dressed: bool = False,
 ) -> None:  # fmt: skip
     """Write tables as a workbook without formulas."""
-    # the archive is made in memory, because it cannot be closed on a full disk and then raises errors later
+    # the workbook is made in memory: a workbook that is written directly to a full disk raises errors later
     # others: file formats for more rows, named in the error
     # dressed: bold fixed headings, fitted column widths and all digits instead of 16, but slower
     for _, table in sheets:

@@ -63,7 +63,7 @@ def test_counts_alone_are_refused() -> None:
     """Also where the user gives them a unit."""
     source = recorded(np.array(COUNTS, dtype=np.int32))
     for units in (None, "m/s2", "gal"):
-        with pytest.raises(RecordError, match="contains counts, not accelerations; add their StationXML"):
+        with pytest.raises(RecordError, match="contains counts, not accelerations; add the StationXML file"):
             MINISEED.read(source, units=units)
 
 

@@ -235,7 +235,8 @@ def test_single_files_of_a_list(tmp_path):
     assert record.x.peak / record.y.peak == pytest.approx(9.80665, rel=1e-9)
     path.write_text("motion,units\na.txt,g\n", "utf-8")
     with pytest.raises(
-        InvalidValueError, match=r"list\.csv: units of a\.txt appears in its row and in files; remove one"
+        InvalidValueError,
+        match=r"list\.csv: units of a\.txt is given twice: in its row of the list and in the table files; remove one",
     ):
         read_records(path, time_step=0.01, files={"a.txt": {"units": "g"}})
     with pytest.raises(InvalidValueError, match=r"this set does not contain the file 'b\.txt'"):

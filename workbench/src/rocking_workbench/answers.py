@@ -143,10 +143,10 @@ class AnswerShape(BaseModel):
 def shape(name: str, meaning: str, /, *more: Any, **fields: Any) -> Any:
     """Return a table of an answer.
 
-    `more` contains a base table, and names of quantities, with [] for lists of values. `fields` contains by key the
-    type, (type, description), or (type, description, quantity). The quantity gives the unit of the key; "" means no
-    unit. The default description of a key is that in `rocking.quantities`. A `Field` in place of the description can
-    add a default.
+    `more` contains a base table, and names of quantities, with [] for lists of values. `fields` maps a key to its
+    type, to (type, description), or to (type, description, quantity). The quantity gives the unit of the key; ""
+    means no unit. The default description of a key is that in `rocking.quantities`. A `Field` in place of the
+    description can add a default.
     """
     base = next((item for item in more if not isinstance(item, str)), AnswerShape)
     fields = {key: kind for names in more if isinstance(names, str) for key, kind in _of_names(names)} | fields

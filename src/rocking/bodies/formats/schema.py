@@ -386,7 +386,8 @@ class MeshTable(StrictTable):
     )
     wall: Positive | None = key("wall thickness of a hollow body [unit of the file]", usual="a solid body")
     inner_parts: Literal["refuse", "solid", "cavity"] = Field(
-        "refuse", description="treatment of closed parts inside another part with the same orientation"
+        "refuse",
+        description="treatment of closed parts inside another part, if the faces of both have the same orientation",
     )
 
 

@@ -415,7 +415,7 @@ class _Assessor:
         friction: float = math.inf,
     ) -> Verdict | NotAssessed:  # fmt: skip
         if (outcome == Outcome.FAILED.code).all(axis=0).any():
-            return NotAssessed.of(item, Message("no motion could be computed in one of its directions"))
+            return NotAssessed.of(item, Message("in one direction of the object no motion could be computed"))
         limits = self.thresholds.of(item.consequence)
         of_model, *of_others = (
             tuple(

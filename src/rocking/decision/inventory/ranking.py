@@ -47,8 +47,8 @@ PLAN_TITLES = (
     Message("base wider, each side [cm]"),
     Message("centre lower [cm]"),
     Message("by ballast [kg]"),
-    Message("anchors of one edge / weight [-]"),
-    Message("anchors of one edge [N]"),
+    Message("tension of the anchors of one edge / weight [-]"),
+    Message("tension of the anchors of one edge [N]"),
     Message("horizontal force of all anchors / weight [-]"),
     Message("largest allowed shaking [%]"),
 )

@@ -224,7 +224,7 @@ def _inner_states(  # noqa: PLR0917 - a history and its inputs
         return inner_states
 
     turned = after[:-1, 0] + before[1:, 0]
-    turned = np.where(turned != 0.0, turned, after[:-1, 1] - before[1:, 1])  # intervals from impact to impact
+    turned = np.where(turned != 0.0, turned, after[:-1, 1] - before[1:, 1])  # zero from one impact to the next
     quickest = max(parameters.right.frequency_parameter, parameters.left.frequency_parameter)
     falls = (time[:-1] < fall - shortest) & (time[1:] > fall + shortest)
     added: list[tuple[float, float, float]] = []

@@ -1,7 +1,7 @@
 """Choice of the next mode by complementarity of contact forces and motions, and functions whose zeros end a mode.
 
-The sign of a series just after its start is the sign of its first nonzero coefficient. At an uplift under a continuous
-motion, accelerations vanish, and a higher derivative decides.
+The sign of a series just after its start is the sign of its first nonzero coefficient. If the
+ground acceleration is continuous at an uplift, the relative acceleration is zero there, and a higher derivative counts.
 """
 
 import math

@@ -54,7 +54,9 @@ def together(path: Path, listed: Mapping[str, Any], stated: Mapping[str, Any], s
     """
     if twice := sorted(set(listed) & set(stated)):
         raise InvalidValueError(
-            "{key} of {file} appears in its row and in files; remove one", file=path.name, key=twice[0]
+            "{key} of {file} is given twice: in its row of the list and in the table files; remove one of them",
+            file=path.name,
+            key=twice[0],
         ).at(source)
     return tuple(sorted({**listed, **stated}.items()))
 

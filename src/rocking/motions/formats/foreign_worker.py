@@ -70,7 +70,7 @@ def _apart(
     if child == 0:
         code = 1
         try:
-            # a child process that lives longer than this process must close its pipes
+            # copies of the pipes of this process: with them, the pipes stay open until the child process ends
             for number in (back, *(pipe.fileno() for pipe in channels)):
                 os.close(number)
             _limit(seconds, memory)

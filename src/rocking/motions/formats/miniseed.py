@@ -28,7 +28,8 @@ _ENCODING = 1000
 _SI = "SI"
 """Location code for real numbers in m/s2 in files of this package. No known network uses this code."""
 STATIONS = Message(
-    "add their StationXML file or a folder of such files with {process}, or use a folder with both files",
+    "add the StationXML file of the station or a folder of such files with {process}, or use a folder with the record "
+    "and its StationXML file",
     {"process": Option("motion.process", "response:stations=FILE.xml")},
 )
 """Hint about the conversion of counts to accelerations."""

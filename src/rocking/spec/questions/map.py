@@ -45,7 +45,8 @@ class MapTable(JobTable):
         odd = sorted({"boundary", "tolerance"} & self.model_fields_set)
         if odd and self.refine is None:
             raise InvalidValueError(
-                "{keys} needs refine. Add the number of refinements along boundaries.", keys=" and ".join(odd)
+                "{keys} requires the key refine. Add refine, the number of refinements along boundaries.",
+                keys=" and ".join(odd),
             )
         return self
 

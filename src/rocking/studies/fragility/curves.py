@@ -491,7 +491,8 @@ def nested(model: FragilityModel, crossing_curves: Crossing = "refuse", highest:
     else:
         keep = Option("export.crossing_curves", "keep-uplift")
         hint = Message(
-            "Their dispersions differ. {option} fits one dispersion for all states but rocking.", {"option": keep}
+            "Their dispersions differ. {option} fits one dispersion for all limit states except rocking.",
+            {"option": keep},
         )
     raise InvalidValueError(
         "curves must not cross, but {crossing}, at most {limit:g} is allowed", crossing=worst.describe(model),

@@ -26,7 +26,7 @@ Outcomes = Callable[[IntArray, FloatArray], tuple[IntArray, BoolArray]]
 
 PARTS = 16  # pieces per bracket in the first round, and in later rounds with few brackets
 WIDE = 0.01  # relative width [-]; long records have narrower survivals, in which the body balances on its corner
-FEW = 1000  # up to this number of brackets, pieces take less time than rounds; above, bisection is used
+FEW = 1000  # largest number of brackets that are divided into PARTS pieces, with fewer rounds; others are bisected
 
 
 @dataclass(frozen=True)

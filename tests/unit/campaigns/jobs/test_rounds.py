@@ -343,7 +343,7 @@ def test_forecast_is_of_the_first_round():
 @pytest.mark.parametrize(
     ("kind", "old", "new", "wanted"),
     [
-        ("map", "refine = 1\n", "", "boundary and tolerance needs refine"),
+        ("map", "refine = 1\n", "", "boundary and tolerance requires the key refine"),
         ("map", "refine = 1", "refine = 13", "map.refine"),
         ("map", "values = [1.5, 3.0, 4.5]", "values = [1.5]", r"map\.refine: frequency_ratio must have at least 2"),
         ("map", "value = 0.9", "values = [0.8, 0.9]", "one restitution"),

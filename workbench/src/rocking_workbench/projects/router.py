@@ -39,7 +39,9 @@ class NewProject(_Request):
     name: Name
     document: Annotated[dict[str, Any], Field(description=_DOCUMENT)] = Field(default_factory=dict)
     copy_of: Annotated[str | None, Field(max_length=40, description="another project")] = None
-    description: Annotated[str, Field(max_length=400, description="description for its history")] = ""
+    description: Annotated[
+        str, Field(max_length=400, description="text of the first entry in the history of the project")
+    ] = ""
 
 
 class ProjectChange(_Request):

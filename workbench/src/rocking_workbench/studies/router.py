@@ -116,7 +116,11 @@ async def delete_study(request: Request, study: str) -> JsonAnswer:
     return JsonAnswer({"deleted": study})
 
 
-@router.get("/{study}/result", summary="Result of a study, by kind", responses=answered(StudyResult, "The result."))
+@router.get(
+    "/{study}/result",
+    summary="Result of a study; its form depends on the kind of the study",
+    responses=answered(StudyResult, "The result."),
+)
 async def study_result(request: Request, study: str) -> Response:
     """Return the result of a finished study."""
     manager = _studies(request)
@@ -150,7 +154,10 @@ async def export_study(
     kind: Kind,
     what: Annotated[
         str | None,
-        Query(max_length=40, description="WHAT of `rocking campaign export --output WHAT=FILE`"),
+        Query(
+            max_length=40,
+            description="content of the file, as CONTENT in `rocking campaign export --output CONTENT=FILE`",
+        ),
     ] = None,
     restitution: Annotated[Whole, Query(description="index of the restitution whose curves are exported")] = 0,
     crossing_curves: Annotated[Crossing | None, Query(description="treatment of crossing fragility curves")] = None,

@@ -9,8 +9,8 @@ from rocking.conventions import FloatArray, IntArray
 from rocking.messages import Message
 
 THIN = 0.05  # largest thickness / width of a sheet [-]
-LOOSE_OPEN = 1e-3  # largest box of a removed open piece / largest box [-]
-LOOSE_CLOSED = 1e-6  # largest box of a removed closed piece / largest box [-]
+LOOSE_OPEN = 1e-3  # bounding box of the largest removed open piece / largest bounding box [-]
+LOOSE_CLOSED = 1e-6  # bounding box of the largest removed closed piece / largest bounding box [-]
 FIN = 0.05  # largest area of fins / area of the surface [-]
 
 

@@ -66,7 +66,7 @@ export const createEditor = (app) => {
   const body = () => app.inputs.get().body;
   const regions = () => editable(body().section, app.body.get(), body().units);
   let { units } = body();
-  // Feet and depth are typed next to the canvas: an undo step includes feet and depth only if it changed them.
+  // Feet and depth have their own fields: an undo step contains them only if the edit replaced the complete section.
   const now = ({ withSection = false } = {}) => {
     const { section, units: of } = body();
     return { section, regions: regions(), units: of, withSection };

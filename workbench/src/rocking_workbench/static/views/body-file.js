@@ -39,7 +39,7 @@ export const BodyFile = ({ app }) => {
     name.value = file.name;
     return read();
   };
-  // The file is kept: another unit imports it again, unless the body has been edited since.
+  // The file is stored. A change of the unit imports it again, unless the body has been edited since the import.
   /** @param {string} unit */
   const inUnit = (unit) => {
     units.value = unit;

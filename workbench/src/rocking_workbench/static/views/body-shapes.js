@@ -19,7 +19,7 @@ export const tableOfShape = (body) => body[shapeOf(body)] ?? body;
 export const withKey = (body, key, value, replaced) => {
   const shape = shapeOf(body);
   const newValue = value ?? undefined;
-  // a block with its own feet needs a table; the short form has none
+  // a block with feet needs the table [block], because the short form cannot contain feet
   if (key === "feet" && newValue && !body[shape]) return withFeet(body, newValue);
   const at = body[shape] ? [shape] : [];
   const next = changedAt(body, [...at, key], newValue);

@@ -26,7 +26,7 @@ export const Evidence = ({ answer, foot, about }) => html`
   </div>
   <p class="field-help">${answer.measured.source}</p>`;
 
-/** Value of the side about which the body rotates before the impact on a foot.
+/** Slenderness ratio of the side about which the body rotates before the impact on a foot.
  * @param {Server.ImpactAnswered} answer @param {Foot} foot */
 export const slendernessOf = ({ body: { sides } }, foot) => sides[foot === "right" ? "left" : "right"].slenderness_ratio;
 

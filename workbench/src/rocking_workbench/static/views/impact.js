@@ -72,7 +72,7 @@ const Results = ({ app, answer }) => {
       <${Card} title="Impulse position">
         ${pictured("Impulse position", impulseRows, "Position along the base: 0 below the centre of mass of a block, 1 at the foot.")}<//>
       <${Card} title="Energy loss by KED">
-        ${pictured("Energy loss by KED", ledgerOf, "Kinetic energy kept and lost (hatched), from 100\u202f%.")}<//>
+        ${pictured("Energy loss by KED", ledgerOf, "Kinetic energy that remains after each stage, and lost energy (hatched), in percent of the energy before the impact.")}<//>
     </div>
     <${Card} title="The three stages of KED">${pictured("The three stages of KED", stagesOf)}<//>
     <${Card} title="The contact bed">
