@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.house_citations import cited, text_of_comments
-from benchmarks.house_facts import keys_of_answers, last_name, modules_named, sentences_read, widths
+from benchmarks.house_facts import keys_of_answers, last_name, modules_named, nodes, sentences_read, widths
 from benchmarks.house_paths import files_passed
 
 ROOT = Path(__file__).parents[1]
@@ -93,7 +93,7 @@ def lines(folder: Path) -> tuple[int, int, int]:
 
 def _docstring_lines(tree: ast.Module) -> set[int]:
     numbers: set[int] = set()
-    for node in ast.walk(tree):
+    for node in nodes(tree):
         kinds = ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef
         if isinstance(node, kinds) and ast.get_docstring(node):
             text = node.body[0]
@@ -104,7 +104,7 @@ def _docstring_lines(tree: ast.Module) -> set[int]:
 def classes(folder: Path) -> Counter[str]:
     """Return the number of definitions of each class name below a folder."""
     return Counter(
-        node.name for tree in trees(folder).values() for node in ast.walk(tree) if isinstance(node, ast.ClassDef)
+        node.name for tree in trees(folder).values() for node in nodes(tree) if isinstance(node, ast.ClassDef)
     )
 
 
@@ -227,7 +227,7 @@ def choices_of_mechanics(folder: Path) -> dict[str, list[str]]:
     for name, tree in trees(folder).items():
         if CHOICE.fullmatch(name):
             continue
-        for node in ast.walk(tree):
+        for node in nodes(tree):
             if isinstance(node, ast.Call) and last_name(node.func) == "in_space":
                 locations["in_space()"].append(f"{name}:{node.lineno}")
             if isinstance(node, ast.Call) and last_name(node.func) == "isinstance":
@@ -285,7 +285,7 @@ def deep_imports(folder: Path) -> tuple[int, int]:
     faces = {name for name in modules if _is_package(name, modules) or name.count(".") < 2}
     deep: dict[str, set[str]] = defaultdict(set)
     for name, tree in trees(folder).items():
-        for node in ast.walk(tree):
+        for node in nodes(tree):
             names = (
                 [node.module or ""] if isinstance(node, ast.ImportFrom)
                 else [alias.name for alias in node.names] if isinstance(node, ast.Import) else []

@@ -6,6 +6,7 @@ All counts are of syntax trees; those of scripts are of their text.
 import ast
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
 from pathlib import Path
 
 _ANSWERS = {"Answer", "AnswerRows"}
@@ -21,6 +22,12 @@ _SENTENCES = {
 _SIZES = {"width", "height"}
 
 
+@cache
+def nodes(tree: ast.AST) -> list[ast.AST]:
+    """Return all nodes of a module, which many functions read one after the other."""
+    return [*ast.walk(tree)]
+
+
 def last_name(node: ast.AST) -> str:
     """Return the last name of an expression such as ``a.b``."""
     return str(getattr(node, "attr", getattr(node, "id", "")))
@@ -30,7 +37,7 @@ def keys_of_answers(trees: Mapping[str, ast.Module]) -> dict[str, str]:
     """Return the keys that are typed in answers, each with one place: module and line."""
     keys = {}
     for name, tree in trees.items():
-        for node in ast.walk(tree):
+        for node in nodes(tree):
             is_call = isinstance(node, ast.Call) and last_name(node.func) in _ANSWERS
             if is_call or (isinstance(node, ast.FunctionDef) and node.name in _METHODS):
                 keys |= {key.value: f"{name}:{key.lineno}" for key in _keys(node)}
@@ -48,7 +55,7 @@ def sentences_read(trees: Mapping[str, ast.Module]) -> list[str]:
 
     Sentences of errors of other libraries, as far as a handler names them, are none of ours.
     """
-    own = {node.name for tree in trees.values() for node in ast.walk(tree) if isinstance(node, ast.ClassDef)}
+    own = {node.name for tree in trees.values() for node in nodes(tree) if isinstance(node, ast.ClassDef)}
     return [
         f"{name}:{call.lineno}"
         for name, tree in trees.items()
@@ -62,8 +69,8 @@ def sentences_read(trees: Mapping[str, ast.Module]) -> list[str]:
 
 def _foreign(tree: ast.AST, own: set[str]) -> set[int]:
     """Return the nodes in which an error is handled, or taken, that is not stated to be of a class of ours."""
-    kinds = [(node, node.type) for node in ast.walk(tree) if isinstance(node, ast.ExceptHandler)]
-    functions = [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]
+    kinds = [(node, node.type) for node in nodes(tree) if isinstance(node, ast.ExceptHandler)]
+    functions = [node for node in nodes(tree) if isinstance(node, ast.FunctionDef)]
     kinds += [
         (node, argument.annotation) for node in functions for argument in node.args.args if argument.arg == "error"
     ]
@@ -80,7 +87,7 @@ def _spoken(tree: ast.AST) -> Iterator[tuple[str, ast.AST]]:
     An empty name means an explicit expression, such as ``result.verdict`` or ``str(error)``.
     """
     yield "", tree
-    for node in ast.walk(tree):
+    for node in nodes(tree):
         loops = (
             node.generators if isinstance(node, ast.GeneratorExp | ast.ListComp | ast.SetComp | ast.DictComp) else ()
         )
@@ -110,13 +117,13 @@ def modules_named(trees: Mapping[str, ast.Module]) -> list[str]:
     locations = []
     for name, tree in trees.items():
         started = {
-            id(after) for node in ast.walk(tree) if isinstance(node, ast.List)
+            id(after) for node in nodes(tree) if isinstance(node, ast.List)
             for before, after in zip(node.elts, node.elts[1:], strict=False)
             if isinstance(before, ast.Constant) and before.value == "-m"
         }  # fmt: skip
-        logs = [node for node in ast.walk(tree) if isinstance(node, ast.Call) and last_name(node.func) == "getLogger"]
+        logs = [node for node in nodes(tree) if isinstance(node, ast.Call) and last_name(node.func) == "getLogger"]
         started |= {id(argument) for node in logs for argument in node.args}
-        for node in ast.walk(tree):
+        for node in nodes(tree):
             is_name = isinstance(node, ast.Constant) and "." in str(node.value) and node.value in trees
             is_import = (
                 isinstance(node, ast.Call) and last_name(node.func) == "import_module" and _is_ours(node.args[0])
@@ -142,7 +149,7 @@ def widths(trees: Mapping[str, ast.Module], scripts: Iterable[Path]) -> list[str
     pictures are no declarations.
     """
     drawn = {name for name in trees if ".plots." in name}
-    names = [name for name, tree in trees.items() if name not in drawn and any(map(_declares, ast.walk(tree)))]
+    names = [name for name, tree in trees.items() if name not in drawn and any(map(_declares, nodes(tree)))]
     listed = re.compile(r"""\["width", "|"width", "height",""")
     kept = [path for path in scripts if path.parent.name not in {"charts", "drawing"}]
     return names + [path.name for path in kept if listed.search(path.read_text("utf-8"))]

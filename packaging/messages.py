@@ -7,6 +7,7 @@ import io
 import re
 from collections.abc import Iterator
 from datetime import UTC, datetime
+from functools import lru_cache
 from pathlib import Path
 
 from babel.messages.catalog import Catalog
@@ -36,9 +37,15 @@ Key = tuple[str, str, str]
 """A message: its text, its text where the count is not 1, and its context; the last two may be empty."""
 
 
+@lru_cache(maxsize=1)
+def _nodes(tree: ast.AST) -> list[ast.AST]:
+    """Return all nodes of a tree, which several functions read one after the other."""
+    return [*ast.walk(tree)]
+
+
 def messages_of(tree: ast.AST) -> Iterator[Key]:
     """Yield the messages of a module: Message(text, facts, many, context), say(text, many)."""
-    for call in ast.walk(tree):
+    for call in _nodes(tree):
         if not isinstance(call, ast.Call) or not call.args:
             continue
         name = getattr(call.func, "id", getattr(call.func, "attr", ""))
@@ -53,7 +60,7 @@ def messages_of(tree: ast.AST) -> Iterator[Key]:
 
 def messages_of_errors(tree: ast.AST) -> Iterator[Key]:
     """Yield the messages of the errors of a module: SomeError(text, hint=text)."""
-    for call in ast.walk(tree):
+    for call in _nodes(tree):
         if not isinstance(call, ast.Call):
             continue
         name = getattr(call.func, "id", getattr(call.func, "attr", ""))
@@ -139,7 +146,7 @@ def plain(text: str) -> str:
 
 def names_of(tree: ast.AST) -> Iterator[str]:
     """Yield the names of fields and parameters of a module, which doors spell with spaces."""
-    for node in ast.walk(tree):
+    for node in _nodes(tree):
         if isinstance(node, ast.arg):
             yield node.arg
         elif isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
@@ -148,13 +155,14 @@ def names_of(tree: ast.AST) -> Iterator[str]:
 
 def descriptions_of(tree: ast.AST) -> Iterator[str]:
     """Yield the descriptions of a module: its docstrings' sentences and parameters, which the server sends."""
-    for node in ast.walk(tree):
+    for node in _nodes(tree):
         if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and (text := ast.get_docstring(node)):
             for section in re.split(r"\n\s*\n|\n(?=\w[\w, ]* : )", text):
                 body = section.partition("\n    ")[2] or section
                 yield from (sentence.removeprefix("Return ") for sentence in (body, *re.split(r"(?<=\.)\s", body)))
 
 
+@lru_cache(maxsize=1)
 def extracted() -> tuple[set[Key], set[str]]:
     """Return the messages of all sources, and every literal in them as `plain`, by which a message may be used."""
     messages, literals = set(), set()
@@ -165,7 +173,7 @@ def extracted() -> tuple[set[Key], set[str]]:
             messages.update(messages_of_errors(tree))
         literals.update((*names_of(tree), *descriptions_of(tree)))
         literals.update(
-            node.value for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)
+            node.value for node in _nodes(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)
         )
     for path in [*PAGE.rglob("*.js"), *PAGE.rglob("*.html")]:
         if "vendor" not in path.parts:

@@ -9,7 +9,7 @@ of the foot in contact. Times are multiplied by the frequency parameter p.
 """
 
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from scipy.special import ellipj, elliprd, elliprf
@@ -123,6 +123,18 @@ class Path:
     feasible: BoolArray  # True without overturning, shape (g,)
 
 
+class _HalfCycle(NamedTuple):
+    """Quantities that all half cycles on one side share."""
+
+    alpha: FloatArray  # slenderness angle, shape (g,) [rad]
+    p: FloatArray  # frequency parameter, shape (g,) [rad/s]
+    alpha_slopes: FloatArray  # shape (g, d)
+    ln_overturning: FloatArray  # ln of the speed that overturns the body, shape (g,)
+    overturning_slopes: FloatArray  # slopes of its dependence on alpha, shape (g, d)
+    change: FloatArray  # change of ln of the speed at the impact without scatter, shape (g,)
+    change_slopes: FloatArray  # shape (d,)
+
+
 @dataclass(frozen=True, eq=False)
 class Model:
     """Prior of a measurement: the body, its side in each half cycle, and the prior distributions."""
@@ -149,49 +161,58 @@ class Model:
         z = self.shared(u)
         unit = np.zeros((len(SHARED), size))
         unit[:, : len(SHARED)] = np.diag(self.deviation)
+        ends = [self._on(side, z, unit) for side in (0, 1)]
         time, speed = z[:, START], z[:, SPEED]
         dt, dx = np.broadcast_to(unit[START], u.shape), np.broadcast_to(unit[SPEED], u.shape)
-        kept: list[tuple[Any, ...]] = []
+        rows = [np.empty((len(u), count + 1)), *(np.empty((len(u), count)) for _ in range(4))]
+        slopes = [np.empty((len(u), count + 1, size)), *(np.empty((len(u), count, size)) for _ in range(2))]
         feasible = np.ones(len(u), dtype=np.bool_)
         trend, damped = (self.deviation[which] > 0.0 or self.mean[which] != 0.0 for which in (TREND, DAMPING))
+        lost, dl = np.zeros(len(u)), np.zeros(u.shape)
+        highest = np.log(_BELOW_OVERTURNING)
         for k, side in enumerate(self.sides):
-            sign = 1.0 - 2.0 * side  # a tilt to the right reduces the slenderness angle over the right foot
-            alone = self.alpha[side] * np.exp(z[:, SLENDERNESS])
-            alpha, p = np.clip(alone - sign * z[:, TILT], 1e-3, _STEEPEST), self.p[side] * np.exp(z[:, FREQUENCY])
-            da = alone[:, None] * unit[SLENDERNESS] - sign * unit[TILT]
-            ln_y = speed - np.log(p * overturning_speed(alpha))
-            dy = dx - unit[FREQUENCY] - (0.5 / np.tan(0.5 * alpha))[:, None] * da
-            feasible &= ln_y < np.log(_BELOW_OVERTURNING)
-            y = np.exp(np.minimum(ln_y, np.log(_BELOW_OVERTURNING)))
-            lost, dl = np.zeros(len(u)), np.zeros(u.shape)
+            end = ends[side]
+            ln_y = speed - end.ln_overturning
+            dy = dx - unit[FREQUENCY] - end.overturning_slopes
+            feasible &= ln_y < highest
+            y = np.exp(np.minimum(ln_y, highest))
             if damped:
                 y, dy, lost, dl = _damped(y, dy, z[:, DAMPING], unit[DAMPING])
-            scaled, by_y, by_alpha = duration_and_slopes(y, alpha)
-            kept.append((time, speed, y, alpha, p, dt, dy, da))
-            time = time + scaled / p
+            scaled, by_y, by_alpha = duration_and_slopes(y, end.alpha)
+            for array, value in zip(rows, (time, speed, y, end.alpha, end.p), strict=True):
+                array[:, k] = value
+            for array, value in zip(slopes, (dt, dy, end.alpha_slopes), strict=True):
+                array[:, k] = value
+            time = time + scaled / end.p
             dt = (
                 dt
-                + (by_y[:, None] * dy + by_alpha[:, None] * da) / p[:, None]
-                - (scaled / p)[:, None] * unit[FREQUENCY]
+                + (by_y[:, None] * dy + by_alpha[:, None] * end.alpha_slopes) / end.p[:, None]
+                - (scaled / end.p)[:, None] * unit[FREQUENCY]
             )
             if k + 1 == count:
                 break
-            lands = -sign  # the body lands on the other side
-            change = z[:, MEAN] + lands * z[:, HALF] + scatter * u[:, len(SHARED) + k] - lost  # Eq. 269
-            dc = unit[MEAN] + lands * unit[HALF] - dl
+            change = end.change + scatter * u[:, len(SHARED) + k] - lost  # Eq. 269
+            dc = end.change_slopes - dl
             dc[:, len(SHARED) + k] += scatter
             if trend:
                 off = speed - self.middle
                 change = change + z[:, TREND] * off
                 dc += off[:, None] * unit[TREND] + z[:, TREND, None] * dx
             speed, dx = speed + change, dx + dc
-        columns: list[Any] = [np.stack(column, axis=1) for column in zip(*kept, strict=True)]
-        times = np.concatenate([columns[0], time[:, None]], axis=1)
-        slopes = np.concatenate([columns[5], dt[:, None]], axis=1)
-        kept_of = dict(
-            zip(("speeds", "y", "alpha", "p", "y_slopes", "alpha_slopes"), columns[1:5] + columns[6:], strict=True)
-        )
-        return Path(times=times, time_slopes=slopes, p_slopes=unit[FREQUENCY], feasible=feasible, **kept_of)
+        rows[0][:, count], slopes[0][:, count] = time, dt
+        return Path(*rows, *slopes, unit[FREQUENCY], feasible)
+
+    def _on(self, side: int, z: FloatArray, unit: FloatArray) -> "_HalfCycle":
+        """Return the quantities of all half cycles on one side."""
+        sign = 1.0 - 2.0 * side  # a tilt to the right reduces the slenderness angle over the right foot
+        alone = self.alpha[side] * np.exp(z[:, SLENDERNESS])
+        alpha, p = np.clip(alone - sign * z[:, TILT], 1e-3, _STEEPEST), self.p[side] * np.exp(z[:, FREQUENCY])
+        da = alone[:, None] * unit[SLENDERNESS] - sign * unit[TILT]
+        lands = -sign  # the body lands on the other side
+        return _HalfCycle(
+            alpha, p, da, np.log(p * overturning_speed(alpha)), (0.5 / np.tan(0.5 * alpha))[:, None] * da,
+            z[:, MEAN] + lands * z[:, HALF], unit[MEAN] + lands * unit[HALF],
+        )  # fmt: skip
 
     def unknowns_at_times(self, u: FloatArray, scatter: FloatArray, times: FloatArray) -> FloatArray:
         """Return unknowns with impacts at given times and the shared parameters of u."""
