@@ -3,6 +3,7 @@
 import gc
 import json
 import os
+import re
 import signal
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -25,6 +26,19 @@ settings.load_profile("rocking")
 def pytest_collect_file() -> Iterator[Any]:
     """Search no examples in docstrings of tests: a tenth of the time of collection."""
     return [node for node in (yield) if not isinstance(node, DoctestModule)]
+
+
+ALL_SLOW = re.compile(r"^pytestmark = \[?\s*pytest\.mark\.slow\b", re.M)
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Import no module whose tests are all of the other tier: more than half of the time of collecting slow tests."""
+    tier = str(config.getoption("markexpr"))
+    if collection_path.suffix != ".py" or not ("not slow" in tier or tier.startswith("slow")):
+        return None
+    text = collection_path.read_text("utf-8")
+    is_other = ALL_SLOW.search(text) if "not slow" in tier else "mark.slow" not in text
+    return True if is_other else None  # None: other plugins decide
 
 
 def pytest_collection_finish() -> None:
