@@ -164,8 +164,9 @@ class Model:
         ends = [self._on(side, z, unit) for side in (0, 1)]
         time, speed = z[:, START], z[:, SPEED]
         dt, dx = np.broadcast_to(unit[START], u.shape), np.broadcast_to(unit[SPEED], u.shape)
-        rows = [np.empty((len(u), count + 1)), *(np.empty((len(u), count)) for _ in range(4))]
-        slopes = [np.empty((len(u), count + 1, size)), *(np.empty((len(u), count, size)) for _ in range(2))]
+        times, time_slopes = np.empty((len(u), count + 1)), np.empty((len(u), count + 1, size))
+        speeds, y_of_cycle, alphas, ps = (np.empty((len(u), count)) for _ in range(4))
+        y_slopes, alpha_slopes = (np.empty((len(u), count, size)) for _ in range(2))
         feasible = np.ones(len(u), dtype=np.bool_)
         trend, damped = (self.deviation[which] > 0.0 or self.mean[which] != 0.0 for which in (TREND, DAMPING))
         lost, dl = np.zeros(len(u)), np.zeros(u.shape)
@@ -179,10 +180,8 @@ class Model:
             if damped:
                 y, dy, lost, dl = _damped(y, dy, z[:, DAMPING], unit[DAMPING])
             scaled, by_y, by_alpha = duration_and_slopes(y, end.alpha)
-            for array, value in zip(rows, (time, speed, y, end.alpha, end.p), strict=True):
-                array[:, k] = value
-            for array, value in zip(slopes, (dt, dy, end.alpha_slopes), strict=True):
-                array[:, k] = value
+            times[:, k], speeds[:, k], y_of_cycle[:, k], alphas[:, k], ps[:, k] = time, speed, y, end.alpha, end.p
+            time_slopes[:, k], y_slopes[:, k], alpha_slopes[:, k] = dt, dy, end.alpha_slopes
             time = time + scaled / end.p
             dt = (
                 dt
@@ -199,8 +198,10 @@ class Model:
                 change = change + z[:, TREND] * off
                 dc += off[:, None] * unit[TREND] + z[:, TREND, None] * dx
             speed, dx = speed + change, dx + dc
-        rows[0][:, count], slopes[0][:, count] = time, dt
-        return Path(*rows, *slopes, unit[FREQUENCY], feasible)
+        times[:, count], time_slopes[:, count] = time, dt
+        return Path(
+            times, speeds, y_of_cycle, alphas, ps, time_slopes, y_slopes, alpha_slopes, unit[FREQUENCY], feasible
+        )
 
     def _on(self, side: int, z: FloatArray, unit: FloatArray) -> "_HalfCycle":
         """Return the quantities of all half cycles on one side."""
