@@ -124,7 +124,7 @@ class Path:
 
 
 class _HalfCycle(NamedTuple):
-    """Quantities that all half cycles on one side share."""
+    """Quantities of all half cycles on one side."""
 
     alpha: FloatArray  # slenderness angle, shape (g,) [rad]
     p: FloatArray  # frequency parameter, shape (g,) [rad/s]
