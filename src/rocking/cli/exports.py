@@ -3,13 +3,10 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rocking.cli.spelling import UsageError
 from rocking.errors import MissingExtraError
-
-if TYPE_CHECKING:
-    from rocking.tables import Table
 
 PICTURES = (".png", ".svg", ".pdf")
 
@@ -144,39 +141,10 @@ CSV = Export((".csv",), lambda answer, path: answer.result.to_csv(path))
 NETCDF = Export((".nc",), lambda answer, path: answer.result.to_netcdf(path), "h5netcdf")
 
 
-def write_dataset(dataset: Any, path: Path) -> None:
-    """Write an `xarray.Dataset` as netCDF, or as a table with one row per cell, depending on the extension."""
-    from rocking.tables import to_csv, to_excel, to_mat, to_netcdf
-
-    ending = path.suffix.lower()
-    if ending == ".nc":
-        to_netcdf(dataset, path)
-    elif ending == ".xlsx":
-        to_excel([("cells", _cells(dataset))], path, dataset.attrs, others=".nc or .csv")
-    elif ending == ".mat":
-        to_mat(_cells(dataset), path)
-    else:
-        to_csv(_cells(dataset), path, blank=False)
-
-
-def _cells(dataset: Any) -> "Table":
-    """Return a dataset as a table with one row per cell."""
-    from rocking.quantities import QUANTITIES
-    from rocking.tables import Column, Table
-
-    dataset = dataset.drop_dims("point", errors="ignore")  # the table does not contain the points of a refined map
-    over = dataset["mode"]
-    names = (*over.dims, *dataset.data_vars, *(name for name in dataset.coords if name not in over.dims))
-    rows = {name: dataset[name].broadcast_like(over).transpose(*over.dims).values.ravel() for name in names}
-    codes = {name: QUANTITIES[name].codes if name in QUANTITIES else {} for name in map(str, names)}
-    # names of restitutions have no unit
-    units = {name: dataset[name].attrs.get("units", "") for name in names}
-    columns = {str(name): Column(row, units[name], codes=codes[str(name)]) for name, row in rows.items()}
-    return Table("row", columns, provenance=dataset.attrs, no_unit="1")
-
-
 def _write_dataset(answer: Any, path: Path) -> None:
-    write_dataset(answer.dataset, path)
+    from rocking.tables import save
+
+    save(answer.dataset, path)
 
 
 # files of results that are a dataset

@@ -1,6 +1,7 @@
 """Tables of results with units, and one writer per file format."""
 
 from rocking.tables.arrays import add_to_netcdf, to_dataset, to_mat, to_netcdf
+from rocking.tables.datasets import save
 from rocking.tables.rows import to_csv, to_dataframe, to_excel, to_parquet
 from rocking.tables.table import PIECE, Cell, Column, Grid, Table, escaped, prefixed, safe_cell, target_of, text_array
 
@@ -14,6 +15,7 @@ __all__ = [
     "escaped",
     "prefixed",
     "safe_cell",
+    "save",
     "target_of",
     "text_array",
     "to_csv",
