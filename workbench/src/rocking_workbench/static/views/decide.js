@@ -184,7 +184,7 @@ const between = (low, high) => (low === null ? "\u2013" : t("{low} to {high}", {
 const Chances = ({ of: { probability, beside } }) => html`
   <${Rows} caption="Probabilities" head=${["outcome", "probability", "95 % interval", "with similar motions"]}
     rows=${[...Object.entries(probability).map(([outcome, chance]) => [WHAT[outcome], chance]),
-      ...Object.entries(beside).map(([model, chance]) => [t("overturns, with {model} and half of the samples", { model: modelWords(model) }), chance])].map(([label, chance]) => [
+      ...Object.entries(beside).map(([model, chance]) => [t("overturns, with {model} and a quarter of the samples", { model: modelWords(model) }), chance])].map(([label, chance]) => [
       label, percent(chance.value), between(chance.low, chance.high), between(chance.wide_low, chance.wide_high)])} />`;
 
 /** Source and processing of the motions, and the scale of the words for probabilities.
