@@ -33,6 +33,7 @@ extensions = [
 exclude_patterns = ["gallery/**.py", "gallery/**.ipynb", "gallery/**.zip", "**/README.md", "_ext"]
 nitpicky = False
 
+smartquotes = False  # options such as --set must stay as they are typed
 html_theme = "furo"
 html_title = f"rocking {release}"
 html_static_path = ["_static"]
