@@ -1,5 +1,6 @@
 """Columns with and without names: shapes, times to the rounding of their digits, nothing guessed, damage refused."""
 
+import csv
 import random
 
 import numpy as np
@@ -164,6 +165,14 @@ def test_round_trip_is_exact(values: list[float], step: float) -> None:
     part = COLUMNS.read(_source(COLUMNS.write(record).decode()), "m/s2", step).components[0]
     assert part.acceleration.tolist() == values
     assert part.time_step == step
+
+
+def test_columns_are_separated_by_commas(made_up) -> None:
+    """The csv module of Python reads a written file; a comma is in the header and in every line."""
+    heading, *rows = csv.reader(COLUMNS.write(made_up("NS", "EW")).decode().splitlines())
+    assert [name.strip() for name in heading] == ["# time [s]", "NS [m/s2]", "EW [m/s2]"]
+    assert {len(row) for row in rows} == {3}
+    assert float(rows[1][0]) == 0.02
 
 
 def test_writer_refuses_what_columns_cannot_hold(made_up) -> None:

@@ -150,7 +150,7 @@ class Columns(RecordFormat):
         return Record(self.name, components, "\n".join(header), metadata)
 
     def write(self, record: Record) -> bytes:
-        """Return a file with times and one to three accelerations, with all digits and the unit."""
+        """Return a file with times and one to three accelerations, separated by commas, with all digits and unit."""
         samples, step = columns_of(record, self.name, None, _MOST_COLUMNS - 1)
         named = [re.sub(r"[\[\](),;=]", " ", one_line(component.name, 40)).strip() for component in record.components]
         unit = record.components[0].unit
@@ -160,7 +160,7 @@ class Columns(RecordFormat):
             heading = ", ".join(["time [s]", *(f"column {index + 2} [{unit}]" for index in range(len(named)))])
         lines = [f"# {heading}"]
         for index, sample in enumerate(samples):
-            lines.append(" ".join([f"{index * step:.9f}", *(repr(float(value)) for value in sample)]))
+            lines.append(",".join([f"{index * step:.9f}", *(repr(float(value)) for value in sample)]))
         return ("\n".join(lines) + "\n").encode("latin-1")
 
 
