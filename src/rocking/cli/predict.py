@@ -26,7 +26,7 @@ from rocking.quantities import closely
 if TYPE_CHECKING:
     from rocking.decision.assessment import BodyAssessment
     from rocking.decision.prediction import Prediction
-    from rocking.spec.documents.prediction import AssessTable, PredictionDocument
+    from rocking.spec.documents.prediction import AssessTable, PredictedBody, PredictionDocument
     from rocking.spec.reading import InputFiles
 
 D = TypeVar("D", bound="PredictionDocument")
@@ -74,7 +74,7 @@ def predict(
         problem = PredictionProblem.of(document, inputs)
     with bar("motions", len(problem.motions), quiet=as_json) as progress:
         result = problem.answer(lambda done: progress(1), threads)
-    deliver(PredictionAnswer(result, Path(body or "").stem, details), exports, as_json=as_json)
+    deliver(PredictionAnswer(result, named(document, inputs, file), details), exports, as_json=as_json)
 
 
 def in_file(
@@ -89,6 +89,13 @@ def in_file(
         lists = "motion" not in stated
         document = checked(kind, with_sets(stated, parsed_sets(sets, tables), lists=lists))
     return document, InputFiles(file.parent)
+
+
+def named(document: "PredictedBody", inputs: "InputFiles", file: Path | None) -> str:
+    """Return the name of the body for the report, otherwise the name of the input file."""
+    from rocking.spec.bodies import name_of
+
+    return name_of(document.body, inputs.folder) or (file.stem if file else "")
 
 
 def typed(
@@ -199,7 +206,7 @@ def assess(
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking assess`."""
-    from rocking.cli.arguments import document_file, is_body
+    from rocking.cli.arguments import document_file
     from rocking.spec.documents.prediction import AssessmentDocument
     from rocking.spec.prediction import PredictionProblem
 
@@ -213,7 +220,7 @@ def assess(
         problem = PredictionProblem.of(document, inputs)
     with bar("histories", quiet=as_json) as progress:
         result = problem.assessed(document.assess, inputs, progress, threads)
-    name = Path(body).stem if body and is_body(body) else ""
+    name = named(document, inputs, file)
     deliver(AssessmentAnswer(result, document.assess, name, details), exports, as_json=as_json)
 
 

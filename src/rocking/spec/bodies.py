@@ -50,6 +50,14 @@ def any_body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body | Rest
     return body_from_tables(tables, None if inputs is None else inputs.folder)
 
 
+def name_of(table: dict[str, Any], folder: Path) -> str:
+    """Return the key `name` of a body or of its file, otherwise the name of the file; empty without both."""
+    if "file" not in table:
+        return str(table.get("name") or "")
+    path = folder / str(table["file"])
+    return str((tables_in(path) or {}).get("name") or path.stem)
+
+
 def body_for_motion(table: dict[str, Any], inputs: InputFiles | None, *, in_space: bool) -> Body | Restrained | Solid:
     """Return the body of a table. With `in_space`, a 2D body with a stated depth becomes a 3D body."""
     body = any_body_of(table, inputs)
