@@ -5,6 +5,7 @@ of an `index` directive are other words for its section, such as the title that 
 """
 
 import json
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -15,7 +16,24 @@ from sphinx.application import Sphinx
 _VENDOR = Path(__file__).parents[2] / "workbench" / "src" / "rocking_workbench" / "static" / "vendor" / "minisearch"
 _INNER = (nodes.section, addnodes.desc)
 _UNREAD = (*_INNER, nodes.comment, nodes.raw, nodes.math_block)
-_LATEX = str.maketrans("", "", "\\{}$")
+_FRACTION = re.compile(r"\\[dt]?frac\s*\{([^{}]*)\}\s*\{([^{}]*)\}")
+_ROOT = re.compile(r"\\sqrt\s*\{([^{}]*)\}")
+_LAYOUT = re.compile(
+    r"\\(?:left|right|big|Big|mathrm|mathbf|mathit|mathcal|text|operatorname|boldsymbol|displaystyle)(?![a-zA-Z])|[{}$]"
+)
+_SPACE = re.compile(r"\\(?:[,;:! ]|q?quad(?![a-zA-Z]))|[\\&]")
+
+
+def plain(latex: str) -> str:
+    r"""Return a formula as words, so that \theta is found as theta.
+
+    >>> plain(r"a_{\mathrm{p}}/(g\,\tan\alpha)"), plain(r"\frac{3 g}{4 R}")
+    ('a_p/(g tan alpha)', '(3 g)/(4 R)')
+    """
+    latex = _ROOT.sub(r"\\sqrt(\1)", latex)
+    while (ratios := _FRACTION.sub(r"(\1)/(\2)", latex)) != latex:
+        latex = ratios
+    return " ".join(_SPACE.sub(" ", _LAYOUT.sub("", latex)).split())
 
 
 def texts(node: nodes.Element) -> Iterator[str]:
@@ -23,16 +41,21 @@ def texts(node: nodes.Element) -> Iterator[str]:
     for child in node.children:
         if isinstance(child, nodes.Text):
             yield str(child)
-        elif isinstance(child, nodes.math):  # \theta is found as theta
-            yield child.astext().translate(_LATEX)
+        elif isinstance(child, nodes.math):
+            yield plain(child.astext())
         elif isinstance(child, nodes.Element) and not isinstance(child, _UNREAD):
             yield from texts(child)
             yield " "
 
 
+def _title(heading: nodes.Element) -> str:
+    """Return a title with its formulas as words."""
+    return " ".join("".join(texts(heading)).split())
+
+
 def entries(tree: nodes.document, address: str) -> Iterator[dict[str, str]]:
     """Yield each section and documented name of a page: title, page title, index terms, address and text."""
-    page = next((title.astext() for title in tree.findall(nodes.title)), address)
+    page = next((_title(title) for title in tree.findall(nodes.title)), address)
     for node in tree.findall(lambda child: isinstance(child, _INNER)):
         heading = next(
             (child for child in node.children if isinstance(child, (nodes.title, addnodes.desc_signature))), None
@@ -40,7 +63,7 @@ def entries(tree: nodes.document, address: str) -> Iterator[dict[str, str]]:
         if heading is None:
             continue
         named = isinstance(heading, addnodes.desc_signature)
-        title = heading.get("fullname", heading.astext()) if named else heading.astext()
+        title = heading.get("fullname", heading.astext()) if named else _title(heading)
         ids = heading.get("ids") or node.get("ids") or [""]
         text = " ".join("".join(texts(node)).split())
         terms = [entry[1] for index in node.children if isinstance(index, addnodes.index) for entry in index["entries"]]
