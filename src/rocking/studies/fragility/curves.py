@@ -385,7 +385,10 @@ def with_common_dispersion(model: FragilityModel) -> FragilityModel:
         raise
     unit, size = _shown(model.im, model.unit)
     names = ", ".join(curve.state for curve in model.curves)
-    text = "The states {states} have a common dispersion, so that their curves do not cross."
+    text = (
+        "The states {states} have a common dispersion, so that their curves do not cross. The common fit has no "
+        "confidence intervals."
+    )
     adjusted: str = Message(text, {"states": names})
     curves = []
     for curve, (median, dispersion) in zip(model.curves, fitted, strict=True):
