@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 R, SLENDERNESS = "coefficient of restitution r [-]", "slenderness ratio h/b [-]"
 
 GROUP_STYLE: dict[str, dict[str, Any]] = {
-    "table1": {"marker": "s", "label": "measured: Kalliontzis et al. 2016"},
-    "S": {"marker": "v", "label": "measured: Čeh et al. 2018, blocks S"},
-    "M": {"marker": "o", "label": "measured: Čeh et al. 2018, blocks M"},
-    "L": {"marker": "^", "label": "measured: Čeh et al. 2018, blocks L"},
+    "table1": {"marker": "s", "label": "Kalliontzis 2016"},
+    "S": {"marker": "v", "label": "Čeh 2018, block S"},
+    "M": {"marker": "o", "label": "Čeh 2018, block M"},
+    "L": {"marker": "^", "label": "Čeh 2018, block L"},
 }
 
 HOLLOW: dict[str, Any] = {"linestyle": "none", "color": INK, "markerfacecolor": "white"}
