@@ -1,7 +1,7 @@
 """The hierarchical calibration: rows of one block, interface and laboratory have common deviations."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import product
@@ -108,7 +108,7 @@ def _calibrated(data: DataSet) -> HierarchicalCalibration:
     if stored["inputs"] == hierarchy_fingerprint(data):
         shares = dict(zip(LEVELS, stored["shares"].tolist(), strict=True))
         return HierarchicalCalibration(**{name: stored[name] for name in FIELDS}, shares=shares)
-    return _Posterior(data, NODES).whole()
+    return _Posterior(data, NODES).whole({})
 
 
 def hierarchy_fingerprint(data: DataSet) -> str:
@@ -120,7 +120,7 @@ def hierarchy_fingerprint(data: DataSet) -> str:
 def keep_hierarchy() -> None:
     """Compute and write the stored values of `calibrate_hierarchy` and of the model `calibrated`."""
     data = all_measurements()
-    posterior, expected = _Posterior(data, NODES).whole(), unseen(data)
+    posterior, expected = _Posterior(data, NODES).whole({}), unseen(data)
     shares = np.array(list(posterior.shares.values()))
     np.savez_compressed(
         KEPT, inputs=hierarchy_fingerprint(data), shares=shares, unseen=expected, **arrays_of(posterior)
@@ -147,10 +147,14 @@ def unseen(data: DataSet) -> FloatArray:
     stored = kept(KEPT)
     if stored["inputs"] == hierarchy_fingerprint(data):
         return np.array(stored["unseen"])
-    groups, expected = _groups(data), np.empty(len(data))
+    groups, expected, posterior = _groups(data), np.empty(len(data)), _Posterior(data, NODES)
+    terms = {laboratory: posterior.term(members) for laboratory, members in posterior.tree.items()}
     for name in dict.fromkeys(groups):
         rows = np.array(groups) == name
-        expected[rows] = _Posterior(data.rows(~rows), NODES).whole().predict(data.slenderness[rows]).coefficient
+        others = _Posterior(data.rows(~rows), NODES)
+        is_kept = others.shares == posterior.shares
+        unchanged = {other: terms[other] for other in others.tree if is_kept and name not in posterior.tree[other]}
+        expected[rows] = others.whole(unchanged).predict(data.slenderness[rows]).coefficient
     return expected
 
 
@@ -233,15 +237,23 @@ class _Posterior:
         """Return the logarithm of the likelihood of a laboratory's rows, on the grid and for all variance fractions."""
         rows = [i for group in groups.values() for block in group.values() for i in block]
         residuals = {i: (self.data.coefficient[i] - self.mean[i], self.loading(i)) for i in rows}  # Eq. 287
-        terms = []
-        for share in self.shares:
-            laboratory, interface, block, alone = (self.variance * fraction for fraction in share)
-            total = _Sums()
+
+        @lru_cache(maxsize=_PARTS)  # the division between laboratory and interface changes nothing here
+        def group_sums(block: float, alone: float) -> list[_Sums]:
+            sums = []
             for group in groups.values():
                 inner = _Sums()
                 for members in group.values():
-                    block_sums = sum((self.row(i, alone, *residuals[i]) for i in members), _Sums())
-                    inner += block_sums if share[2] == 0.0 else block_sums.integrated(block)
+                    block_sums = sum((self.row(i, self.variance * alone, *residuals[i]) for i in members), _Sums())
+                    inner += block_sums if block == 0.0 else block_sums.integrated(self.variance * block)
+                sums.append(inner)
+            return sums
+
+        terms = []
+        for share in self.shares:
+            laboratory, interface = (self.variance * fraction for fraction in share[:2])
+            total = _Sums()
+            for inner in group_sums(*share[2:]):
                 total += inner.integrated(interface)
             total = total if share[0] == 0.0 else total.integrated(laboratory)
             terms.append(-0.5 * (total.square + total.logarithm + len(rows) * math.log(2.0 * math.pi)))  # Eq. 291
@@ -252,10 +264,11 @@ class _Posterior:
         scaled = loading / own
         return _Sums(loading * scaled, residual * scaled, residual**2 / own, np.log(own))  # Eq. 289
 
-    def whole(self) -> HierarchicalCalibration:
-        """Return the calibration on all rows."""
+    def whole(self, terms: Mapping[str, FloatArray]) -> HierarchicalCalibration:
+        """Return the calibration on all rows; the terms of some laboratories may be stated."""
         shape = (*map(len, vars(self.nodes).values()), len(self.shares))
-        return self.calibration(np.broadcast_to(self.log_prior + sum(map(self.term, self.tree.values())), shape))
+        summed = sum(terms[name] if name in terms else self.term(groups) for name, groups in self.tree.items())
+        return self.calibration(np.broadcast_to(self.log_prior + summed, shape))
 
     def calibration(self, logarithm: FloatArray) -> HierarchicalCalibration:
         """Return the calibration from logarithms of weights."""

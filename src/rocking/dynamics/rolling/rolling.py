@@ -126,9 +126,9 @@ def _back(vector: list[Terms], k: int) -> list[Terms]:
     return [series[k::-1] for series in vector]
 
 
-def _crossed(left: list[Terms], right: list[Terms], k: int) -> list[float]:
-    """Return coefficient k of the vector product of two series."""
-    (a, b, c), (x, y, z) = left, _back(right, k)
+def _crossed(left: list[Terms], back: list[Terms]) -> list[float]:
+    """Return a coefficient of the vector product of two series, from the second series by `_back`."""
+    (a, b, c), (x, y, z) = left, back
     return [
         sum(map(mul, b, z)) - sum(map(mul, c, y)),
         sum(map(mul, c, x)) - sum(map(mul, a, z)),
@@ -176,18 +176,18 @@ class RollingFlow:
         """Return the Taylor series of a step: attitude, velocity, vertical, and contact point on the ground (2,)."""
         s = _Series(state, field)
         for k in range(order):
-            self._contact(s, k)
+            back = _back(s.w, k)
+            self._contact(s, k, back)
             self._dynamics(s, k)
-            self._advance(s, k, length / (k + 1))
+            self._advance(s, k, length / (k + 1), back)
         return np.array(s.q).T, np.array(s.w).T, np.array(s.up).T, np.array(s.ground_point).T
 
-    def _advance(self, s: _Series, k: int, factor: float) -> None:
+    def _advance(self, s: _Series, k: int, factor: float, back: list[Terms]) -> None:
         """Add the next power of all integrated series."""
         fall, traced = self._flattening(s, k), self._traced(s, k)
-        back = _back(s.w, k)
         _add(s.q, turned([[sum(map(mul, series, term)) for term in back] for series in s.q], factor))
         for row in s.level:
-            _add(row, [factor * term for term in _crossed(row, s.w, k)])
+            _add(row, [factor * term for term in _crossed(row, back)])
         _add(s.up, [factor * rate[k] for rate in s.rate_up])
         for vector, derivative in zip_longest(s.field, s.field[1:]):
             derivatives = [series[k] / (k + 1) for series in derivative] if derivative else (0.0, 0.0, 0.0)
@@ -195,17 +195,17 @@ class RollingFlow:
                 vector,
                 [
                     factor * term + increment
-                    for term, increment in zip(_crossed(vector, s.w, k), derivatives, strict=True)
+                    for term, increment in zip(_crossed(vector, back), derivatives, strict=True)
                 ],
             )
         _add(s.w, [factor * spin[k] for spin in s.spin])
         _add([*s.n, s.h], [factor * s.bend[0][k], factor * s.bend[1][k], -factor * fall])
         _add(s.ground_point, [-factor * self.body.radius * term for term in traced])  # Eq. 100
 
-    def _contact(self, s: _Series, k: int) -> None:
+    def _contact(self, s: _Series, k: int, back: list[Terms]) -> None:
         """Add the terms of the motion of the lowest point along the rim."""
         radius, centre = self.body.radius, self.body.centre.tolist() if k == 0 else (0.0, 0.0, 0.0)
-        _add(s.rate_up, _crossed(s.up, s.w, k))
+        _add(s.rate_up, _crossed(s.up, back))
         (nx, ny), (x, y) = s.n, _back(s.rate_up[:2], k)
         # Eq. 99
         s.slip.append(sum(map(mul, nx, y)) - sum(map(mul, ny, x)))  # t . Z'
@@ -230,11 +230,11 @@ class RollingFlow:
         """Add the terms of the angular acceleration."""
         mass, inertia = self.body.mass, self.body.inertia.tolist()
         w, body_inertia = [series[k] for series in s.w], inertia if k == 0 else [[0.0] * 3] * 3
-        _add(s.speed, _crossed(s.w, s.arm, k))
-        swept = _crossed(s.arm, s.speed, k)
+        _add(s.speed, _crossed(s.w, _back(s.arm, k)))
+        swept = _crossed(s.arm, _back(s.speed, k))
         _add(s.momentum, [sum(map(mul, row, w)) + mass * term for row, term in zip(inertia, swept, strict=True)])
         # m rho x (R^T G - w x rho')
-        shed = _crossed(s.w, s.arm_rate, k)
+        shed = _crossed(s.w, _back(s.arm_rate, k))
         _add(s.weight, [force[k] - term for force, term in zip(s.field[0], shed, strict=True)])
         x, y, z = s.arm
         xx, yy, zz, yz, xz, xy = (_term(a, b, k) for a, b in ((x, x), (y, y), (z, z), (y, z), (x, z), (x, y)))
@@ -250,6 +250,6 @@ class RollingFlow:
             sum(map(mul, a[1:], u)) + sum(map(mul, b[1:], v)) + sum(map(mul, c[1:], w))
             for (a, b, c), (u, v, w) in ((row, earlier) for row in s.inertia)
         ]
-        pull, turn = _crossed(s.arm, s.weight, k), _crossed(s.w, s.momentum, k)
+        pull, turn = _crossed(s.arm, _back(s.weight, k)), _crossed(s.w, _back(s.momentum, k))
         torque = [mass * a - b - c for a, b, c in zip(pull, turn, coupling, strict=True)]  # Eq. 23
         _add(s.spin, [sum(map(mul, row, torque)) for row in self.solve])
