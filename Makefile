@@ -101,6 +101,7 @@ lint: $(VENV)/dev $(ENGINE)
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 	$(BIN)/python packaging/prose.py
+	@git log --no-merges --since=2026-12-01T00:00 --format=%s 2>/dev/null | awk 'length($$0) > 72 { bad = 1; print "more than 72 characters: " $$0 } END { exit bad }'
 	@! grep -nE 'https?://|file:' requirements/*.lock || (echo "a lock file holds an address" && false)
 
 # Nothing else needs node, which may be missing.
