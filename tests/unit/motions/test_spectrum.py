@@ -1,6 +1,7 @@
 """Response spectra against closed forms and an independent integrator of high order."""
 
 import math
+from functools import cache
 
 import numpy as np
 import pytest
@@ -129,6 +130,7 @@ def test_pseudo_and_true_acceleration_differ_with_damping():
     assert (damped.absolute_acceleration > 1.02 * damped.pseudo_acceleration).all()
 
 
+@cache  # with and without the compiled module
 def _per_period(motion, period, damping):
     """Peaks of one oscillator: every part of every step is looked at, none is passed over."""
     w = 2.0 * math.pi / period
