@@ -7,9 +7,11 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+import httpx
 import pytest
 from browser_pages import OwnServer, link
 from waiting import HANG
@@ -18,6 +20,15 @@ playwright = pytest.importorskip("playwright.sync_api")
 
 CHROMIUM = os.environ.get("ROCKING_CHROMIUM", "/usr/bin/chromium")
 WIDE = {"width": 1360, "height": 900}
+# A window without tabs in sight: Chromium would draw a page for the list under its address bar in each, at 2 s of CPU.
+# The switch replaces that of Playwright, whose features are the others.
+DISABLED = [
+    "WebUIOmniboxPopup", "WebUIOmniboxAimPopup", "WebUIOmniboxFullPopup", "SpareRendererForSitePerProcess",
+    "AvoidUnnecessaryBeforeUnloadCheckSync", "DestroyProfileOnBrowserClose", "HttpsUpgrades",
+    "HttpsFirstBalancedModeAutoEnable", "LensOverlay", "MediaRouter", "PaintHolding", "ThirdPartyStoragePartitioning",
+    "AvoidCorsURLLoaderRestartOnRedirect", "OptimizationHints", "NetworkTimeServiceQuerying", "AimEnabled",
+    "PreconnectToSearch",
+]  # fmt: skip
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -27,7 +38,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker(pytest.mark.browser)
 
 
-@dataclass(frozen=True)
+@dataclass
 class Served:
     """Where the server of a test listens."""
 
@@ -37,13 +48,16 @@ class Served:
     folder: Path
     key: str
 
+    @cached_property
+    def client(self) -> httpx.Client:
+        """The client of a script; a new one for each call would read all certificates again, at 60 ms of CPU."""
+        head = {"Authorization": f"Bearer {self.key}", "Origin": self.url}
+        once = httpx.Limits(max_keepalive_connections=0)  # the server may close an idle connection at any time
+        return httpx.Client(base_url=f"{self.url}/api/", headers=head, timeout=HANG, limits=once)
+
     def api(self, path: str, **options: Any) -> Any:
         """Call the API as a script does, past the browser."""
-        import httpx
-
-        headers = {"Authorization": f"Bearer {self.key}", "Origin": self.url}
-        options.setdefault("timeout", HANG)
-        answer = httpx.request(options.pop("method", "POST"), f"{self.url}/api/{path}", headers=headers, **options)
+        answer = self.client.request(options.pop("method", "POST"), path, **options)
         answer.raise_for_status()
         return answer.json()
 
@@ -85,15 +99,25 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
         try:
             told = json.loads(process.stdout.readline())
             key = Path(told["key_file"]).read_text(encoding="utf-8").strip()
-            yield Served(told["url"].rstrip("/"), told["token"], told["port"], folder, key)
+            server = Served(told["url"].rstrip("/"), told["token"], told["port"], folder, key)
+            with server.client:
+                yield server
         finally:
             process.terminate()
             process.wait(timeout=HANG)
 
 
+# Messages vanish after 5 s or 12 s, which on a busy machine is before a test reads them.
+SLOWLY = """{
+  const after = window.setTimeout;
+  window.setTimeout = (act, pause, ...given) => after(act, pause >= 5000 ? 100 * pause : pause, ...given);
+}"""
+
+
 def _patient(opened: Any) -> Any:
-    """Set the guard against hanging of a context or page, and return it."""
+    """Set the guard against hanging of a context or page, let its messages stay, and return it."""
     opened.set_default_timeout(1000.0 * HANG)
+    opened.add_init_script(SLOWLY)
     return opened
 
 
@@ -104,7 +128,8 @@ def browser() -> Iterator[Any]:
         pytest.skip(f"no Chromium at {CHROMIUM}; install it, or name another in ROCKING_CHROMIUM")
     with playwright.sync_playwright() as driver:
         playwright.expect.set_options(timeout=1000.0 * HANG)
-        launched = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        arguments = ["--no-sandbox", f"--disable-features={','.join(DISABLED)}"]
+        launched = driver.chromium.launch(executable_path=CHROMIUM, args=arguments)
         new_context, new_page = launched.new_context, launched.new_page
         launched.new_context = lambda **options: _patient(new_context(**options))
         launched.new_page = lambda **options: _patient(new_page(**options))
@@ -176,7 +201,11 @@ def page(open_page: Callable[..., Any]) -> Any:
 
 @pytest.fixture(scope="session")
 def until() -> Callable[..., None]:
-    """Wait for a state of the test itself: `until(page, condition)`; what never comes fails."""
+    """Wait for a state of the test itself: `until(page, condition)`; what never comes fails.
+
+    `page.wait_for_function` evaluates its text in the page once more, which the policy of the page refuses, unless the
+    state is there at once.
+    """
 
     def waited(page: Any, condition: Callable[[], Any]) -> None:
         deadline = time.monotonic() + HANG

@@ -90,7 +90,9 @@ def test_a_new_link_signs_an_open_tab_in_again(open_page: Callable[..., Any], se
     assert "token" not in page.url
 
 
-def test_a_call_refused_before_the_sign_in_is_repeated(open_page: Callable[..., Any], served: Any) -> None:
+def test_a_call_refused_before_the_sign_in_is_repeated(
+    open_page: Callable[..., Any], served: Any, until: Callable[..., None]
+) -> None:
     """The refusal of a call that was sent without the cookie arrives after the sign-in: no second dialog."""
     page = open_page()
     page.get_by_test_id("facts-table").wait_for()
@@ -101,6 +103,7 @@ def test_a_call_refused_before_the_sign_in_is_repeated(open_page: Callable[..., 
     page.locator("#view-body").get_by_label("Width").fill("0.75")
     door = page.get_by_role("dialog", name="Sign in again")
     door.wait_for()
+    until(page, lambda: refused)
     assert [answer.status for _, answer in refused] == [401]
     page.goto(served.api("session/link")["url"])
     expect(door).to_have_count(0)
@@ -110,7 +113,9 @@ def test_a_call_refused_before_the_sign_in_is_repeated(open_page: Callable[..., 
     expect(door).to_have_count(0)
 
 
-def test_a_refusal_read_after_the_sign_in_opens_no_second_dialog(open_page: Callable[..., Any], served: Any) -> None:
+def test_a_refusal_read_after_the_sign_in_opens_no_second_dialog(
+    open_page: Callable[..., Any], served: Any, until: Callable[..., None]
+) -> None:
     """The status of a refusal arrives before the sign-in and its content after it: the call is repeated."""
     page = open_page()
     page.get_by_test_id("facts-table").wait_for()
@@ -123,7 +128,7 @@ def test_a_refusal_read_after_the_sign_in_opens_no_second_dialog(open_page: Call
     }""")
     page.context.clear_cookies()
     page.evaluate("() => void (window.late = import('/app/api.js').then((api) => api.call('questions')))")
-    page.wait_for_function("window.arrive !== undefined")
+    until(page, lambda: page.evaluate("window.arrive !== undefined"))
     page.locator("#view-body").get_by_label("Width").fill("0.75")
     door = page.get_by_role("dialog", name="Sign in again")
     door.wait_for()

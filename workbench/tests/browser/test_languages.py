@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 from browser_pages import DECISIVE, GENTLE, facts, link, response
+from waiting import wait_for
 
 from rocking import checks
 from rocking.decision.inventory import parse_inventory
@@ -50,6 +51,11 @@ TOLD = """async (messages) => {
 }"""
 
 
+def _computed(page: Any, step: str) -> None:
+    """Wait until nothing of a step is being computed."""
+    wait_for(lambda: page.evaluate(COMPUTED, step))
+
+
 def texts(page: Any) -> set[str]:
     """Return every text that can be seen or heard, in every step."""
     found: set[str] = set()
@@ -59,7 +65,7 @@ def texts(page: Any) -> set[str]:
         page.wait_for_load_state("networkidle")
         if step in ANSWERED:
             page.locator(ANSWERED[step]).first.wait_for()
-        page.wait_for_function(COMPUTED, arg=step)
+        _computed(page, step)
         found.update(page.evaluate(SHOWN))
     return found
 
@@ -329,7 +335,7 @@ def test_long_words_fit_a_phone(open_page: Callable[..., Any], shot: Callable[..
         page.wait_for_selector(f"#view-{step}[data-ready=true]")
         if step in ANSWERED:
             page.locator(ANSWERED[step]).first.wait_for()
-        page.wait_for_function(COMPUTED, arg=step)
+        _computed(page, step)
         page.wait_for_load_state("networkidle")
         page.evaluate(LONG)
         for width in (320, 360, 390):

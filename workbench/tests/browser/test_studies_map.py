@@ -11,7 +11,7 @@ import httpx
 import numpy as np
 import pytest
 from playwright.sync_api import expect
-from waiting import HANG, allowed
+from waiting import HANG, allowed, wait_for
 
 CAMPAIGN = bool(os.environ.get("ROCKING_CAMPAIGN"))
 CELLS = 1000 if CAMPAIGN else 500  # along each axis
@@ -65,7 +65,7 @@ def moved(page: Any, count: int = 100) -> list[float]:
     for k in range(count):
         x, y = 0.15 + 0.8 * k / count, 0.1 + 0.7 * ((7 * k) % count) / count
         page.mouse.move(box["x"] + x * box["width"], box["y"] + y * box["height"])
-    page.wait_for_function("count => moves.length >= count", arg=0.9 * count)
+    wait_for(lambda: page.evaluate("moves.length") >= 0.9 * count)
     found: list[float] = page.evaluate("moves.splice(0)")
     return found
 
