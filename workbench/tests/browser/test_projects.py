@@ -44,12 +44,16 @@ def test_what_was_typed_is_there_in_another_browser(open_page: Callable[..., Any
     assert [each["description"] for each in states] == ["body", "begun"]
 
 
-def test_who_leaves_at_once_loses_nothing(open_page: Callable[..., Any]) -> None:
+def test_who_leaves_at_once_loses_nothing(
+    open_page: Callable[..., Any], served: Any, until: Callable[..., None]
+) -> None:
     """What was typed just before the page was left is saved on the way out."""
     page = open_page()
     page.get_by_label("Width").fill("0.85")
     page.goto("about:blank")
-    page.wait_for_timeout(500)
+    (project,) = served.api("projects", method="GET")["projects"]
+    where = f"projects/{project['id']}"
+    until(page, lambda: served.api(where, method="GET")["document"]["inputs"]["body"]["width"] == 0.85)
     expect(open_page().get_by_label("Width")).to_have_value("0.85")
 
 
@@ -382,12 +386,12 @@ def test_back_to_a_state_of_the_history(open_page: Callable[..., Any]) -> None:
     expect(page.get_by_label("Width")).to_have_value("0.8")
 
 
-def test_studies_belong_to_a_project(open_page: Callable[..., Any]) -> None:
+def test_studies_belong_to_a_project(open_page: Callable[..., Any], served: Any) -> None:
     """A study is in the list of its own project, and of all projects where that is asked."""
     page = open_page(view="studies")
     studies = page.get_by_test_id("study-list").get_by_role("listitem")
-    page.wait_for_timeout(500)
-    others = studies.count()  # of no project
+    others = sum(not study["project"] for study in served.api("studies", method="GET")["studies"])
+    expect(studies).to_have_count(others)
     page.get_by_role("button", name="Launch").click()
     expect(studies).to_have_count(others + 1)
     dialog = opened_dialog(page)
