@@ -314,7 +314,7 @@ def inputs(folder: Path) -> None:
     """Put the files that commands read into a folder."""
     shutil.copy(rk.examples.path("statue"), folder / "statue.toml")
     shutil.copy(rk.examples.path("block-under-a-pulse"), folder / "response.toml")
-    shutil.copy(rk.examples.path("statue-let-go"), folder / "free.toml")
+    shutil.copy(rk.examples.path("statue-released"), folder / "free.toml")
     shutil.copy(rk.examples.path("objects"), folder / "inventory.csv")
     (folder / "record.txt").write_text(RECORD, encoding="utf-8")
     (folder / "solid.toml").write_text(SOLID_FILE, encoding="utf-8")

@@ -7,10 +7,11 @@ from typing import Annotated, Any
 import typer
 
 from rocking.answers import Answer
-from rocking.cli import completion
+from rocking.cli import completion, options
 from rocking.cli.page import Page, deliver
 
-AsJson = Annotated[bool, typer.Option("--json", help="Result as JSON.")]
+_MOST_SUFFIXES = 3  # extensions of a format in the list without --details
+_TEXTS, _ALL = ("name", "model", "files", "unit", "step", "description"), range(5)
 
 
 def models(
@@ -18,7 +19,8 @@ def models(
         str | None,
         typer.Argument(help="Model or FILE.py:MODEL. [default: all models]", autocompletion=completion.every_model),
     ] = None,
-    as_json: AsJson = False,
+    details: options.Details = False,
+    as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking models`."""
     from rocking import checks, restitution
@@ -36,12 +38,14 @@ def models(
             "unknown restitution model {name!r}; models: {names}", parameter="restitution", name=name,
             names=", ".join(kinds), hint=near,
         )  # fmt: skip
-    deliver(_Models({key: kind for key, kind in kinds.items() if name in {None, key}}), as_json=as_json)
+    chosen = {key: kind for key, kind in kinds.items() if name in {None, key}}
+    deliver(_Models(chosen, details or name is not None), as_json=as_json)
 
 
 @dataclass(frozen=True)
 class _Models:
     kinds: dict[str, Any]
+    details: bool
 
     def answer(self) -> Answer:
         """Return the title, reference, assumptions, domain and known defects of each model."""
@@ -49,6 +53,11 @@ class _Models:
         return Answer({key: {name: getattr(kind, name) for name in names} for key, kind in self.kinds.items()})
 
     def show(self, page: Page) -> None:
+        if not self.details:
+            rows = [(key, kind.title) for key, kind in self.kinds.items()]
+            page.table(("name", "model"), rows, _TEXTS, unfolded=_ALL)
+            page.line("\nAssumptions, domain and known defects: rocking models NAME, or --details")
+            return
         for key, entry in self.answer().values.items():
             page.line(f"{key}: {entry.pop('title')}")
             for name, value in entry.items():
@@ -58,12 +67,15 @@ class _Models:
             page.line()
 
 
-def record_formats(as_json: AsJson = False) -> None:
+def record_formats(details: options.Details = False, as_json: options.AsJson = False) -> None:
     """Run `rocking record formats`."""
-    deliver(_Formats(), as_json=as_json)
+    deliver(_Formats(details), as_json=as_json)
 
 
+@dataclass(frozen=True)
 class _Formats:
+    details: bool
+
     def answer(self) -> Answer:
         """Return the title, extensions, stated quantities and notes of each format."""
         from rocking.motions.formats import formats as registered
@@ -72,23 +84,23 @@ class _Formats:
         return Answer({key: {name: getattr(kind, name) for name in names} for key, kind in registered().items()})
 
     def show(self, page: Page) -> None:
-        from rich.console import Console
-        from rich.table import Table
-        from rich.text import Text
-
-        console = Console(highlight=False)
-        if not console.is_terminal:  # fixed width for a file or a pipe
-            console = Console(highlight=False, width=100)
-        table = Table(box=None, pad_edge=False, header_style="bold")
-        for head in ("name", "files", "unit", "step"):
-            table.add_column(head, no_wrap=head != "files", max_width=14)
-        table.add_column("description", ratio=1)
-        for name, fact in self.answer().values.items():
-            about = Text(fact["title"])
-            if fact["notes"]:
-                about.append(f"\n{fact['notes']}\n", style="dim")
-            stated = ("in file" if fact[key] else "required" for key in ("states_unit", "states_time_step"))
-            table.add_row(name, " ".join(fact["suffixes"]) or "any", *stated, about)
-        console.print(table)
+        facts = self.answer().values.items()
+        rows = [(name, self._suffixes(fact["suffixes"]), *_stated(fact), fact["title"]) for name, fact in facts]
+        page.table(("name", "files", "unit", "step", "description"), rows, _TEXTS, unfolded=_ALL)
         page.line("unit, step: in the file, or required: --units and --set motion.time_step=SECONDS.")
         page.line("The format is found by content, not by extension; --set motion.format=NAME overrides.")
+        if not self.details:
+            page.line("All extensions, and the files of each verification: --details")
+            return
+        for name, fact in facts:
+            if fact["notes"]:
+                page.line(f"\n{name}", "bold")
+                page.line(textwrap.fill(fact["notes"], width=100, initial_indent="  ", subsequent_indent="  "))
+
+    def _suffixes(self, suffixes: tuple[str, ...]) -> str:
+        shown = suffixes if self.details else suffixes[:_MOST_SUFFIXES]
+        return " ".join(shown) + " ..." * (len(shown) < len(suffixes)) or "any"
+
+
+def _stated(fact: dict[str, Any]) -> list[str]:
+    return ["in file" if fact[key] else "required" for key in ("states_unit", "states_time_step")]

@@ -53,7 +53,7 @@ class _Listed:
     def show(self, page: Page) -> None:
         if self.is_complete:
             rows = [(example.name, example.kind, example.title) for example in self.chosen.values()]
-            page.table(("name", "kind", "title"), rows, ("name", "kind", "title"), unfolded={0, 1})
+            page.table(("name", "kind", "title"), rows, ("name", "kind", "title"), unfolded=range(3))
             page.line("\nRun an example in this folder: rocking examples NAME. In Python: rk.examples.")
             return
         for example in self.chosen.values():

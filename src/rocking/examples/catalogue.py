@@ -48,7 +48,7 @@ def catalogue(kind: str | None = None) -> Catalogue:
 
     Parameters
     ----------
-    kind : {"body", "motion", "list", "question", "job"}, optional
+    kind : {"body", "motion", "list", "input", "job"}, optional
         Kind of examples; the default is all.
 
     Returns

@@ -80,7 +80,7 @@ def _scaled_to_pga(peak: float, motion: GroundMotion) -> GroundMotion:
     return scaled_to(motion, "pga", peak * g)
 
 
-Kind = Literal["body", "motion", "list", "question", "job"]
+Kind = Literal["body", "motion", "list", "input", "job"]
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,7 @@ class Example:
     ----------
     name : str
         Name of the example.
-    kind : {"body", "motion", "list", "question", "job"}
+    kind : {"body", "motion", "list", "input", "job"}
         A body, a ground motion, a list of objects, an input file of one response, or a job of many.
     title : str
         Description in one line.
@@ -150,9 +150,9 @@ def _motion(name: str, make: Callable[..., Any], model: str, title: str, seed: i
     return Example(name, "motion", title, commands, records=(name,), make=make, model=model, seed=seed)
 
 
-def _question(name: str, title: str) -> Example:
+def _input(name: str, title: str) -> Example:
     return Example(
-        name, "question", title, (f"rocking simulate {name}.toml --output {name}.png",), (f"questions/{name}.toml",)
+        name, "input", title, (f"rocking simulate {name}.toml --output {name}.png",), (f"questions/{name}.toml",)
     )
 
 
@@ -257,14 +257,14 @@ _ALL = (
         ("rocking inventory liste.csv --pga 0.3g --count 80 --output liste.html",),
         ("jobs/liste.csv",),
     ),
-    _question("block-under-a-pulse", "a cabinet under a sine pulse; the result depends on the restitution model"),
-    _question("statue-let-go", "a statue with eccentric centre of mass, free rocking from the left"),
+    _input("block-under-a-pulse", "a cabinet under a sine pulse; the result depends on the restitution model"),
+    _input("statue-released", "a statue with eccentric centre of mass, free rocking from the left"),
     Example(
-        "block-heard",
-        "question",
+        "block-sound",
+        "input",
         "impact times of a freely rocking block from sound, and its coefficient of restitution",
-        ("rocking identify block-heard.toml --output block-heard.png",),
-        ("questions/block-heard.toml", "questions/block-heard.csv"),
+        ("rocking identify block-sound.toml --output block-sound.png",),
+        ("questions/block-sound.toml", "questions/block-sound.csv"),
     ),
     _job("overturning-map", "map", "overturning map of a block under 60 x 60 sine pulses"),
     _campaign("refined-map", "png", "the same map with refined boundaries as polylines"),

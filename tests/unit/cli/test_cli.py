@@ -161,16 +161,19 @@ def test_with_json_a_refusal_is_data(run):
 
 
 def test_table_names_every_format(run):
-    """Every format stands in the table with its endings; only columns leave both unit and step to the user."""
-    code, out, err = run("record", "formats")
+    """One line per format with its unit and step; --details adds all extensions and the notes."""
+    code, short, err = run("record", "formats")
     assert (code, err) == (0, "")
-    rows = {line.split()[0]: line for line in out.splitlines() if line[:1].strip()}
+    out = run("record", "formats", "--details")[1]
+    assert len(short.splitlines()) == 1 + len(formats()) + 3
+    rows = {line.split()[0]: line for line in short.splitlines()}
     assert set(formats()) <= set(rows)
     for name, kind in formats().items():
         assert all(suffix in out for suffix in kind.suffixes)
         assert ("required" in rows[name]) == (not (kind.states_unit and kind.states_time_step))
-    assert "--units" in out
-    assert max(len(line) for line in out.splitlines()) <= 100
+        assert " ".join(kind.notes.split()) in " ".join(out.split())
+        assert not kind.notes or kind.notes[:40] not in short
+    assert "--units" in short
 
 
 def test_json_is_what_the_formats_say(run):

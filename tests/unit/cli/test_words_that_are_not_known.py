@@ -4,6 +4,7 @@ import json
 
 import pytest
 
+import rocking as rk
 from rocking.bodies import Block
 from rocking.checks import nearest, number_hint
 from rocking.errors import RockingError, UnknownModelError
@@ -93,7 +94,10 @@ def test_share_of_the_slenderness_angle(run):
 
 def test_models_in_space_are_listed_and_shown(printed):
     """Every model that `cor` prints for a solid is one of `rocking models`, with its facts; capitals do not matter."""
-    out = printed("models")
+    rows = [line.split()[0] for line in printed("models").splitlines() if line]
+    assert set(spatial_models()) < set(rows)
+    assert len(rows) == 2 + len(rk.restitution.models()) + len(spatial_models())
+    out = printed("models", "--details")
     assert all(f"\n{name}: " in f"\n{out}" for name in spatial_models())
     out = printed("models", "KED-3D")
     assert out.startswith("ked-3d: ")

@@ -199,7 +199,7 @@ def test_what_is_not_there():
         rk.examples.body("near-fault")
     with pytest.raises(InvalidValueError, match="motion must be one of"):
         rk.examples.motion("statue")
-    with pytest.raises(InvalidValueError, match="kind must be one of body, motion, list, question, job"):
+    with pytest.raises(InvalidValueError, match="kind must be one of body, motion, list, input, job"):
         rk.examples.catalogue("bodies")
     with pytest.raises(InvalidValueError, match=r"near-fault is computed and has no file; use motion\('near-fault'\)"):
         rk.examples.path("near-fault")

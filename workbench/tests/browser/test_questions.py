@@ -273,7 +273,7 @@ def body_link() -> str:
 
 def test_what_an_impact_costs(open_page: Callable[..., Any], shot: Callable[..., Any]) -> None:
     """The times of the example say a coefficient with its interval, beside the models and with a picture."""
-    recording = str(examples.path("block-heard")).replace(".toml", ".csv")
+    recording = str(examples.path("block-sound")).replace(".toml", ".csv")
     page = open_page(body_link())
     section = page.locator("#view-measure")
     section.get_by_label("Drop a recording here, or").set_input_files(recording)

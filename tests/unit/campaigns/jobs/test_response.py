@@ -15,7 +15,7 @@ from rocking.spec.response import ResponseProblem, response_problem
 
 EXAMPLES = [
     path
-    for path in sorted(examples.path("statue-let-go").parent.glob("*.toml"))
+    for path in sorted(examples.path("statue-released").parent.glob("*.toml"))
     if "[measurement]" not in path.read_text("utf-8")  # asked by `rocking identify`
 ]
 BODY = '[body]\nunits = "cm"\nwidth = 50\nheight = 200\n'
