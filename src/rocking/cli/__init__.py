@@ -37,9 +37,9 @@ def main(arguments: Sequence[str] | None = None, unnamed_file: str = "") -> None
             warnings.simplefilter("always", SlowEngineWarning)
             warnings.showwarning = _Notes()
             _register_own_models()
-            # without a command, show the help
-            full_arguments = arguments + ["--help"] * (arguments in ([], *([name] for name in SUBCOMMANDS)))
-            code = application(arguments)(args=full_arguments, prog_name="rocking", standalone_mode=False, obj=main)
+            code = application(arguments)(
+                args=_with_help(arguments, SUBCOMMANDS), prog_name="rocking", standalone_mode=False, obj=main
+            )
     except RockingError as error:
         refusal = with_help(error.without_file(unnamed_file))
     except click_exception as error:
@@ -62,6 +62,12 @@ def main(arguments: Sequence[str] | None = None, unnamed_file: str = "") -> None
     as_json = json.dumps({"error": {**refusal.data(), "message": sentence}}) if "--json" in arguments else ""
     print(as_json or f"rocking: {sentence}", file=sys.stderr)
     sys.exit(2)
+
+
+def _with_help(arguments: list[str], groups: Sequence[str]) -> list[str]:
+    """Return the arguments, with --help for a group without a command."""
+    named = arguments[: -1 if arguments[-1:] == ["--help-all"] else None]
+    return [*named, "--help"] if named in ([], *([name] for name in groups)) else arguments
 
 
 def _of_own_model(error: Exception) -> "RockingError":

@@ -35,13 +35,19 @@ def with_models(compute: Callable[["StudyProblem"], Any], problem: "StudyProblem
     return result, others
 
 
-def model_facts(label: str, others: Mapping[str, Any], facts: Facts, body: Any = None) -> dict[str, Any]:
-    """Return the sentence on the restitution model of a result, and the values of the compared models by label."""
+def model_facts(
+    label: str, others: Mapping[str, Any], facts: Facts, body: Any = None, *, is_stated: bool | None = None
+) -> dict[str, Any]:
+    """Return the sentence on the restitution model of a result, and the values of the compared models by label.
+
+    `is_stated` is True for a stated model; None means a stated model if there are no compared models.
+    """
     values_of_models = {
         restitution_label(name, body): {"error": str(result)} if isinstance(result, RockingError) else facts(result)
         for name, result in others.items()
     }
-    return {"headline": headline(restitution_label(label, body)), "other_models": values_of_models}
+    is_stated = not others if is_stated is None else is_stated
+    return {"headline": headline(restitution_label(label, body), is_stated=is_stated), "other_models": values_of_models}
 
 
 def show_models(page: Page, answer: Answer, display: Display, label: str, own: dict[str, Any]) -> None:

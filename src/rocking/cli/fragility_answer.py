@@ -199,7 +199,7 @@ class FragilityAnswer:
         page.facts(subject_lines(self.problem, display))
         page.facts([
             ("motions", _motions_line(self._motions_facts())),
-            *source_lines(self.sources),
+            *(source_lines(self.sources) if self.details else ()),
             ("restitution", ", ".join(labels)),
             ("measure", f"{first.subject.measure.name}, {first.subject.measure_words}"),
             ("rocking", self._uplift(display)),
@@ -217,7 +217,7 @@ class FragilityAnswer:
             page.line(self.compared.text(self.unit))
         show_models(page, answer, display, ", ".join(self.results), _of_model(first))
         if not self.details:
-            page.line("Definitions, intervals and comparison: --details    Files: -o curves.csv, -o picture.png")
+            page.line("Definitions, sources and comparison: --details    Files: -o curves.csv, -o picture.png")
 
     def _uplift(self, display: Display) -> str:
         check, lowest = self.first.uplift, self.first.subject.lowest_uplift
@@ -248,8 +248,10 @@ class FragilityAnswer:
         """Return the reason for joint curves, and the separate curves with their intervals."""
         if self.shown is None or not self.shown.adjusted:
             return []
+        if self._adjusted() and not self.details:
+            return ["The curves have a common dispersion, because separately fitted curves cross (--details)."]
         lines = [str(self.shown.adjusted)]
-        for name in self._adjusted() if self.details else ():
+        for name in self._adjusted():
             summary, texts = self.first.fits[name].summary(), []
             for quantity in _OF_CURVES[:2]:
                 ends = display.table([summary], [quantity])[-1]

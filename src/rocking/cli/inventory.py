@@ -180,7 +180,10 @@ class InventoryAnswer:
         if self.details:
             self._show_details(page, say)
         in_space = {verdict.item.solid is not None or verdict.friction < NEVER_SLIDES for verdict in verdicts}
-        models = [say(headline(assessment.restitution, in_space=is_3d)) for is_3d in sorted(in_space)]
+        models = [
+            say(headline(assessment.restitution, in_space=is_3d, is_stated=not assessment.drawn))
+            for is_3d in sorted(in_space)
+        ]
         page.line("\n".join(dict.fromkeys(models)))
         if assessment.ignored:
             page.line(say("Columns that were not read: {columns}", columns=", ".join(assessment.ignored)))

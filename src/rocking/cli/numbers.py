@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rocking import checks
 from rocking.bodies import Block
-from rocking.cli.page import Page
+from rocking.cli.page import Page, wrap
 from rocking.cli.spelling import UsageError
 from rocking.conventions import UNITS, FloatArray
 from rocking.spec.fields import Angle, Values, kinds_of, meaning_and_unit
@@ -134,22 +134,27 @@ def recommendation_values(recommendation: Any) -> dict[str, Any]:
     return {} if recommendation is None else {"recommendation": recommendation.answer()}
 
 
-def show_recommendation(page: Page, recommendation: Any) -> None:
-    """Write a recommendation on a page; nothing for None."""
+_COLUMNS = {
+    "kept": "energy after 2 impacts", "to half": "impacts to half energy", "bias": "bias of r", "error": "RMSE of r",
+    "standing": "comparison",
+}  # fmt: skip
+_MOST_RECOMMENDED = 8  # rows without details
+
+
+def show_recommendation(page: Page, recommendation: Any, *, details: bool = True) -> None:
+    """Write a recommendation on a page; nothing for None. With `details` it contains the evidence, and no r."""
     if recommendation is None:
         return
-    from rocking.evidence.recommendation import LEGEND
-
     page.line("\nRecommended model", "bold")
     head, rows = recommendation.table
     if recommendation.judgement is not None:
-        # coefficients and intervals are in the table above
-        shown = [k for k, name in enumerate(head) if name.split()[0] != "r"]
+        # with details, coefficients and intervals are in the table above
+        shown = [k for k, name in enumerate(head) if not details or name.split()[0] != "r"]
         chosen = {k for k, row in enumerate(rows) if row[0] == recommendation.prediction}
-        cells = [[row[k] for k in shown] for row in rows]
-        page.table([head[k] for k in shown], cells, ("model", "standing"), bold=chosen)
-        page.line(LEGEND, "dim")
-    for sentence in recommendation.evidence:
+        cells = [[row[k] for k in shown] for row in rows][: None if details else _MOST_RECOMMENDED]
+        names = [_COLUMNS.get(head[k], head[k]) for k in shown]
+        page.table([wrap(name, 12) for name in names], cells, ("model", "comparison"), bold=chosen, unfolded={0})
+    for sentence in recommendation.evidence if details else ():
         page.line(sentence)
     for sentence in recommendation.advice:
         page.line(sentence, "bold")

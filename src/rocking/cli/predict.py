@@ -8,20 +8,28 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
-from rocking.answers import Answer, Display
+from rocking.answers import Answer
 from rocking.cli import options
+from rocking.cli.assessed import (
+    R,
+    assessment_values,
+    headline_of,
+    measures_of,
+    model_cells,
+    prediction_values,
+    show_assumed,
+    show_subject,
+)
 from rocking.cli.code_checks import show_limits
-from rocking.cli.compared import by_foot, grouped, spanned
+from rocking.cli.compared import grouped
 from rocking.cli.exports import CSV, NETCDF, REPORTED, Exports
 from rocking.cli.numbers import number_or_name
 from rocking.cli.page import MOST_MODELS, MOST_ROWS, Page, bar, deliver
 from rocking.cli.study import source_lines
-from rocking.conventions import Assumed
 from rocking.decision.prediction.forecast import input_label
 from rocking.decision.prediction.likelihood import scale_words
 from rocking.errors import located
 from rocking.messages import listed
-from rocking.quantities import closely
 
 if TYPE_CHECKING:
     from rocking.decision.assessment import BodyAssessment
@@ -36,9 +44,7 @@ COUNT, SEED = 20, 1
 
 
 EXPORTS = {**REPORTED, "csv": CSV, "netcdf": NETCDF}
-_R = Display(own=closely(coefficient=".3f"))
 _NAMED = ("calibrated", "housner", "ked")  # restitution cases with their own row
-_SHOWN_INPUTS = ("friction", "restitution")  # in the line with the assumptions
 
 
 @options.takes(options.SIZES)
@@ -139,22 +145,26 @@ class PredictionAnswer:
         from rocking.reports.motion_sources import motion_table
 
         result = self.result
+        show_subject(page, result)
         page.line(result.verdict, style="bold")
-        for line in result.sentences[1:]:
-            page.line(line)
+        if self.details:
+            for line in result.sentences[1:]:
+                page.line(line)
+        else:
+            self._show_values(page)
         page.line()
-        if self.details or 1 < len(result.motions) <= MOST_ROWS:
+        if self.details or 1 < len(result.motions) <= MOST_MODELS:
             page.reported(motion_table(result))
             page.line()
         if result.decides:
             page.line(result.decides)
             page.line()
         else:
-            page.rows(result.ranked_contributions)
+            page.rows(result.ranked_contributions, most=MOST_ROWS if self.details else MOST_MODELS)
             page.line("Contributions to the variance of overturning (Sobol indices).")
             page.line()
         if not self.details:
-            _show_assumed(page, result)
+            show_assumed(page, result)
             page.line("Reasons, sources and likelihood terms: --details    Files: -o report.pdf, -o table.csv")
             return
         listed = result.assumptions.keys() | result.fixed.keys()
@@ -165,24 +175,14 @@ class PredictionAnswer:
         page.line(scale_words())
         page.warn(result.repairs)
 
-
-def _model_cells(rows: list[dict[str, Any]]) -> tuple[str, ...]:
-    """Return name, coefficients, number of motions with overturning and margin of a group of restitution cases."""
-    label = rows[0]["restitution"] if len(rows) == 1 else f"{len(rows)} other models"
-    r = by_foot(_R, *([row[f"coefficient_{foot}"] for row in rows] for foot in ("left", "right")))
-    return label, r, rows[0]["overturned"], spanned(_R, "min_factor", [row["min_factor"] for row in rows])
-
-
-def _show_assumed(page: Page, result: "Prediction") -> None:
-    """Write the assumptions that matter most in one line, and the repairs of a mesh."""
-    values = ((name, getattr(result.body, name, None), unit) for name, unit in (("density", "kg/m3"), ("depth", "m")))
-    assumed = [f"{name} {value:g} {unit}" for name, value, unit in values if isinstance(value, Assumed)]
-    inputs = [name for name in result.assumptions if name in result.inputs]
-    assumed += [f"{name} {result.inputs[name]}" for name in inputs if name in _SHOWN_INPUTS]
-    if others := len(set(inputs) - set(_SHOWN_INPUTS)):
-        assumed.append(f"{others} other inputs")
-    page.line(f"Assumed: {'; '.join(assumed)} (all inputs: --details)")
-    page.warn(result.repairs)
+    def _show_values(self, page: Page) -> None:
+        """Write the values and the sentences that limit the verdict."""
+        result = self.result
+        page.values(prediction_values(result))
+        for line in filter(None, [getattr(result.body, "caution", ""), result.evidence, result.headline]):
+            page.line(line)
+        if result.failed:
+            page.warn([f"{result.failed} of {result.histories} histories have no result and do not count."])
 
 
 @options.takes(options.SIZES)
@@ -251,9 +251,13 @@ class AssessmentAnswer:
 
     def show(self, page: Page) -> None:
         result = self.result
-        for text, style in zip(result.sentences[:3], ("bold", "bold", None), strict=True):
-            page.line(text, style=style)
+        show_subject(page, result.prediction, "; both polarities")
+        page.line(headline_of(result), style="bold")
+        if result.body.caution:
+            page.line(result.body.caution)
+        page.values(assessment_values(result))
         page.line(result.prediction.evidence)
+        page.line(result.headline)
         page.line()
         if self.details:
             self._show_details(page)
@@ -262,21 +266,23 @@ class AssessmentAnswer:
         shown = {name for name in rows if len(rows) <= MOST_MODELS or name.partition(",")[0] in _NAMED}
         groups = grouped({name: row["overturned"] for name, row in rows.items()}, shown)
         head = ("restitution model", "r", "overturned", "margin")
-        page.table(head, [_model_cells([rows[name] for name in group]) for group in groups], head[:1])
+        page.table(head, [model_cells([rows[name] for name in group]) for group in groups], head[:1])
         page.warn(f"{name}: {reason}" for name, reason in result.refused.items())
         page.line()
-        page.line(result.governing_factors[-1])
-        for text in result.measures:
+        for text in measures_of(result):
             page.line(text)
         page.line()
-        _show_assumed(page, result.prediction)
+        show_assumed(page, result.prediction)
         page.line("Causes, code methods, sliding and sources: --details    Report: -o report.pdf")
 
     def _show_details(self, page: Page) -> None:
         from rocking.decision.code_methods import CODE_METHODS
 
         result = self.result
-        page.rows(result.model_rows, (), _R, most=len(result.models) + 1, dense=False)
+        for text in result.sentences[:3]:
+            page.line(text)
+        page.line()
+        page.rows(result.model_rows, (), R, most=len(result.models) + 1, dense=False)
         page.warn(f"{name}: {reason}" for name, reason in result.refused.items())
         page.line()
         if result.standing is not None:

@@ -17,6 +17,7 @@ from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.motions.summary import MotionSummary, peak_name
 from rocking.outcome import Outcome
+from rocking.restitution import models
 from rocking.restitution.headline import headline
 from rocking.spec.construction import COMPLEMENTARITY
 from rocking.spec.response import ResponseProblem
@@ -56,8 +57,13 @@ _AGREE, _DIFFER = "All models have the same outcome.", "The outcome depends on t
 _IN_PYTHON = "simulate(body, motion, friction=...)"
 
 
-def answer_of(problem: ResponseProblem, display: Display, *, listed: bool, details: bool) -> "ResponseAnswer":
-    """Return the response to a problem, and the responses of other models: listed models, or the default comparison."""
+def answer_of(
+    problem: ResponseProblem, display: Display, *, listed: bool, is_stated: bool, details: bool
+) -> "ResponseAnswer":
+    """Return the response to a problem, and the responses of other models: listed models, or the default comparison.
+
+    `is_stated` is True if the input states the restitution.
+    """
     response = problem.answer()
     if response.outcome is Outcome.FAILED:
         raise RockingError("there is no response: {reason}", reason=response.status.value)
@@ -75,7 +81,7 @@ def answer_of(problem: ResponseProblem, display: Display, *, listed: bool, detai
             others[name] = problem.answer(law)
         except RockingError as error:
             others[name] = str(error)
-    return ResponseAnswer(problem, response, display, others, details=details)
+    return ResponseAnswer(problem, response, display, others, is_stated=is_stated, details=details)
 
 
 @dataclass(frozen=True)
@@ -86,6 +92,7 @@ class ResponseAnswer:
     response: Any
     display: Display
     others: dict[str, Any] = field(default_factory=dict)  # response of each model, or the reason for its absence
+    is_stated: bool = False  # True if the input states the restitution
     details: bool = False  # True to show every impact and model
 
     @property
@@ -113,7 +120,7 @@ class ResponseAnswer:
         more["other_models"] = {
             name: {"error": response} if isinstance(response, str) else _facts(response) for name, response in others
         }
-        more["headline"] = headline(answer["restitution"])
+        more["headline"] = headline(answer["restitution"], is_stated=self.is_stated)
         return answer | more
 
     def show(self, page: Page) -> None:
@@ -146,10 +153,10 @@ class ResponseAnswer:
         page.line()
         for assumed in answer["body"]["assumed"]:
             page.line(sentence(assumed))
-        page.facts(_sources(self._components.values()), 8)
+        page.facts(_sources(self._components.values()) if self.details else (), 8)
         page.warn(answer["body"].values.get("repairs", ()))
         if not self.details:
-            page.line("Impacts and energy: --details    Files: --output response.csv, --output response.html")
+            page.line("Impacts, energy and sources: --details    Files: --output response.csv, --output response.html")
 
     def _show_tables(self, page: Page, answer: Answer) -> None:
         for name, (title, columns) in _TABLES.items() if self.details else ():
@@ -220,7 +227,8 @@ class ResponseAnswer:
             page.line(agreement.sentence)
             return
         count = sum(response.outcome is Outcome.OVERTURNED for response in computed.values())
-        cases = f"{count} of {len(computed)} restitution cases"
+        is_model = self.response.parameters.label.partition(":")[0] in models()
+        cases = f"{count} of {len(computed)} {'models' if is_model else 'restitution cases'}"
         page.line(f"The result depends on the restitution model: overturning with {cases}.")
         for doubt in agreement.doubts:
             page.line(doubt)

@@ -191,16 +191,9 @@ class PlaneAnswer:
             page.line(line)
         if body.is_symmetric and (outside := outside_evidence(body)):
             page.line(outside)
-        for foot, rows in answer["coefficients"].items():
-            page.line()
-            where = f" (landing on the {foot} foot)" if len(answer["coefficients"]) > 1 else ""
-            page.line(f"Coefficient of restitution, velocity after / velocity before{where}", "bold")
-            records = [row.values for row in rows]
-            page.rows(
-                records, _DETAILS if self.details else _SHOWN, display, bold=_bold(records), most=len(rows), dense=False
-            )
-            page.warn(dict.fromkeys(f"{row['model']}: {warning}" for row in rows for warning in row["warnings"]))
-        page.line("95 %: interval for one measured body (39 published measurements)")
+        is_short = self.recommendation is not None and not self.details
+        if not is_short:
+            self._show_coefficients(page, answer, display)
         if self.details:
             page.line("k: impulse position / half base; friction demand: at the impact")
             for foot, fractions in answer["ked_energy_fractions"].items():
@@ -211,9 +204,22 @@ class PlaneAnswer:
             page.line(f"\n{name}: {'keeps all identities' if not broken else 'breaks identities'}", "bold")
             for check in broken:
                 page.line(f"  {check.sentence}")
-        show_recommendation(page, self.recommendation)
-        if not self.details:
+        show_recommendation(page, self.recommendation, details=self.details)
+        if is_short:
+            page.line("All coefficients, and the evidence of the recommendation: --details")
+        elif not self.details:
             page.line("Recommended model: --recommend    Impulse position and energy: --details")
+
+    def _show_coefficients(self, page: Page, answer: Answer, display: Display) -> None:
+        """Write one table of coefficients per landing foot."""
+        for foot, rows in answer["coefficients"].items():
+            page.line()
+            where = f" (landing on the {foot} foot)" if len(answer["coefficients"]) > 1 else ""
+            page.line(f"Coefficient of restitution, velocity after / velocity before{where}", "bold")
+            records, names = [row.values for row in rows], _DETAILS if self.details else _SHOWN
+            page.rows(records, names, display, bold=_bold(records), most=len(rows), dense=False)
+            page.warn(dict.fromkeys(f"{row['model']}: {warning}" for row in rows for warning in row["warnings"]))
+        page.line("95 %: interval for one measured body (39 published measurements)")
 
 
 def _bold(records: list[dict[str, Any]]) -> set[int]:

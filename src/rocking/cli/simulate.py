@@ -131,7 +131,8 @@ def simulate(
     if in_space and problem.mechanics.name != "hull":
         raise UsageError(".glb is for 3D bodies with friction; use .html or .gif")
     with bar("history", quiet=as_json):
-        answer = answer_of(problem, display, listed=stated, details=details)
+        is_stated = "restitution" in document.model_fields_set
+        answer = answer_of(problem, display, listed=stated, is_stated=is_stated, details=details)
     deliver(answer, exports, as_json=as_json)
 
 
@@ -206,7 +207,8 @@ def _several(arguments: Arguments, texts: list[str], display: Display, *, quiet:
                         raise
                     responses[name] = error
     own = responses.pop(label)
-    return SeveralAnswer(problem.body, listed, own, display, restitution_label(label, problem.body), responses)
+    name = restitution_label(label, problem.body)
+    return SeveralAnswer(problem.body, listed, own, display, name, responses, "restitution" in tables)
 
 
 def _followed(problem: "ResponseProblem", motions: list[Any], law: Any, progress: Any) -> list[Any]:
@@ -228,6 +230,7 @@ class SeveralAnswer:
     display: Display
     label: str  # label of the restitution
     others: dict[str, Any]  # responses with the compared models
+    is_stated: bool  # True if the input states the restitution
 
     def answer(self) -> Answer:
         """Return each motion with its outcome, peak and number of impacts."""
@@ -239,7 +242,7 @@ class SeveralAnswer:
             }
             for motion, response in pairs
         ]  # fmt: skip
-        facts = model_facts(self.label, self.others, _overturned, self.body)
+        facts = model_facts(self.label, self.others, _overturned, self.body, is_stated=self.is_stated)
         return Answer({"overturned": self._overturned, "restitution": self.label, "motions": rows, **facts})
 
     @property

@@ -13,6 +13,18 @@ _DEFAULT_3D = (
     "published measurements; there is no measurement in 3D."
 )
 _STATED = "Restitution model of the result: {model}, as stated in the input."
+_ASSESSED = (
+    "The margin is the smallest of all restitution models ({case}). The probability uses the default, {model}, which "
+    "is fitted to {count} published measurements."
+)
+_ASSESSED_3D = (
+    "The margin is the smallest of all restitution models ({case}). The probability uses the default, {model}, whose "
+    "plane form is fitted to {count} published measurements; there is no measurement in 3D."
+)
+_ASSESSED_STATED = (
+    "The margin is the smallest of all restitution models ({case}). The probability uses {model}, as stated in the "
+    "input."
+)
 
 
 def label_of(name: str, *, in_space: bool) -> str:
@@ -24,14 +36,19 @@ def label_of(name: str, *, in_space: bool) -> str:
     return f"{name}-3d" if in_space and name in {DEFAULT_RESTITUTION, *COMPARED_RESTITUTIONS} else name
 
 
-def headline(label: str, *, in_space: bool = False) -> Message:
-    """Return the sentence with the model of a result and its reason. `in_space` is True for a 3D body.
+def headline(label: str, *, in_space: bool = False, is_stated: bool = False, case: str = "") -> Message:
+    """Return the sentence with the model of a result and its reason; `case` is the restitution of a margin.
 
-    >>> str(headline("ked"))
-    'Restitution model of the result: ked, as stated in the input.'
+    `in_space` is True for a 3D body, `is_stated` for a model that the input states.
+
+    >>> str(headline("ked")), str(headline("calibrated", is_stated=True))[-27:]
+    ('Restitution model of the result: ked, as stated in the input.', 'd, as stated in the input.')
     """
     name = label.removesuffix("-3d")
-    if name != DEFAULT_RESTITUTION:
-        return Message(_STATED, {"model": label})
-    model = label_of(name, in_space=True) if in_space else label
-    return Message(_DEFAULT if model == name else _DEFAULT_3D, {"model": model, "count": len(kept(KEPT)["unseen"])})
+    model = label_of(name, in_space=True) if in_space and name == DEFAULT_RESTITUTION else label
+    facts = {"model": model, "case": case, "count": len(kept(KEPT)["unseen"])}
+    if is_stated or name != DEFAULT_RESTITUTION:
+        return Message(_ASSESSED_STATED if case else _STATED, facts)
+    if model == name:
+        return Message(_ASSESSED if case else _DEFAULT, facts)
+    return Message(_ASSESSED_3D if case else _DEFAULT_3D, facts)

@@ -133,13 +133,16 @@ def test_help_is_quick():
 
 @pytest.mark.slow
 def test_cor_says_which_model_to_use(run):
-    """With --recommend page and JSON say what Python says; without it neither does."""
+    """--recommend prints at most 8 models and the advice, --details the evidence too; JSON contains all of it."""
     words = ("restitution", "--width", 2, "--height", 16, "--units", "cm")
     found = rk.evidence.recommend(rk.Block(width=0.02, height=0.16))
     code, out, err = run(*words, "--recommend")
     assert (code, err) == (0, "")
-    for sentence in (*found.evidence, *found.advice):
-        assert sentence in out
+    assert all(sentence in out for sentence in found.advice)
+    assert not any(sentence in out for sentence in found.evidence)
+    assert len(out.splitlines()) <= 24
+    page = run(*words, "--recommend", "--details")[1]
+    assert all(sentence in page for sentence in (*found.evidence, *found.advice))
     told = json.loads(run(*words, "--recommend", "--json")[1])["recommendation"]
     assert told["prediction"] == found.prediction
     assert told["envelope"] == list(found.envelope)

@@ -135,3 +135,15 @@ def test_quantities_have_their_unit(capsys, monkeypatch, command):
         (line,) = [line for line in page.splitlines() if re.search(rf" {option} +[<A-Z]", line)]
         assert unit in line
     assert "\nOutput:\n" in page
+
+
+@pytest.mark.parametrize("group", [[], ["record"], ["campaign"], ["measurements"]])
+def test_help_all_of_a_group_is_its_help(capsys, group):
+    """A group of commands accepts --help-all; with an unknown option (negative control) it ends with code 2."""
+    pages = []
+    for option, code in (("--help", 0), ("--help-all", 0), ("--help-every", 2)):
+        with pytest.raises(SystemExit) as stop:
+            main([*group, option])
+        assert (stop.value.code or 0) == code
+        pages.append(capsys.readouterr().out)
+    assert pages[0] == pages[1] != pages[2]

@@ -81,7 +81,8 @@ def test_what_is_printed_and_written(printed, tmp_path):
     out = printed(
         *SIZE, PULSE, "--motion", "sine:amplitude=1,period=0.8", *FEW, "-o", picture, "-o", table, "--details"
     )
-    assert out.startswith("Overturning is ")
+    assert out.startswith("Block 0.5 x 2 m, ")
+    assert "\nOverturning is " in out
     assert "not sampled:  placement" in out
     assert "Sobol" in out
     assert picture.stat().st_size > 10_000
@@ -149,7 +150,7 @@ def test_reports_say_what_was_said(printed, tmp_path):
     page = tmp_path / "found.html"
     out = printed(*SIZE, PULSE, *FEW, "--output", str(page))
     text = page.read_text("utf-8")
-    assert out.splitlines()[0] in text
+    assert out.splitlines()[3] in text
     assert "placement" in text
     assert "16 bodies under each motion" in text
     found = rk.predict(rk.Block(width=0.5, height=2.0), rk.pulses.sine(4.2, 0.8), count=16, contributions=False)

@@ -162,7 +162,7 @@ def test_other_models_are_asked_too(run, answered):
         assert found["peak_rotation"] == response.peak_rotation
         assert found["coefficient"]["left"] == model.coefficient(BLOCK, "left")
     assert (answer["outcome"], answer["other_models"]["housner"]["outcome"]) == ("overturned", "rocked")
-    assert "overturning with 7 of 8 restitution cases." in run(*SIZE, word, *ked)[1]
+    assert "overturning with 7 of 8 models." in run(*SIZE, word, *ked)[1]
     out = run(*SIZE, word, *ked, "--details")[1]
     assert "the body overturns with ked" in out
     assert "does not overturn with housner" in out

@@ -70,7 +70,7 @@ _SLIDES_LATER = (
     "With a friction coefficient of {friction:.3g} (b/h = {slope:.3g}), the body can slide only during rocking: "
     "{result}."
 )
-_MAIN_INPUT = "Main uncertainty: {input} ({share:.2f} of the variance)."
+_MAIN_INPUT = "Main uncertainty: {input} ({share:.0f} % of the variance)."
 _NO_MAIN_INPUT = (
     "No single uncertain input is distinguishable (95 %) as the main one. The largest total index of overturning is "
     "that of {input}, {share:.2f}."
@@ -474,9 +474,10 @@ class BodyAssessment:
         if shares:
             main = max(shares, key=lambda name: shares[name].total)
             others = [item.total_high for name, item in self.prediction.contributions.items() if name != main]
-            text = _MAIN_INPUT if shares[main].total_low > max(others, default=0.0) else _NO_MAIN_INPUT
+            is_main, share = shares[main].total_low > max(others, default=0.0), min(shares[main].total, 1.0)
             source = Message("the choice of motion") if main == "case" else input_label(main)
-            sentences.append(Message(text, {"input": source, "share": min(shares[main].total, 1.0)}))
+            text, value = (_MAIN_INPUT, 100.0 * share) if is_main else (_NO_MAIN_INPUT, share)
+            sentences.append(Message(text, {"input": source, "share": value}))
         return tuple(sentences)
 
     @property
@@ -514,6 +515,11 @@ class BodyAssessment:
         if self.standing is not None:
             sentences.append("These measures apply to the plane body; the 3D body may overturn over another edge.")
         return tuple(sentences)
+
+    @property
+    def headline(self) -> str:
+        """Restitution models of margin and probability and the reason for them, as a sentence."""
+        return self.prediction.headline_with(self.lowest.model)
 
     @property
     def model_rows(self) -> list[dict[str, Any]]:
@@ -579,6 +585,7 @@ class BodyAssessment:
         """
         return Answer({
             "verdict": self.verdict,
+            "headline": self.headline,
             "sentences": list(self.sentences),
             "body": repr(self.body if self.standing is None else self.standing.solid),
             "motions": [item.name for item in self.motions],

@@ -214,9 +214,24 @@ class Prediction(Exported):
     @property
     def headline(self) -> str:
         """Restitution model of the probabilities and the reason for it, as a sentence."""
+        return self.headline_with()
+
+    def headline_with(self, case: str = "") -> str:
+        """Return the sentence with the restitution model of the probabilities.
+
+        Parameters
+        ----------
+        case : str
+            Restitution of a margin, for the sentence of an assessment.
+
+        Returns
+        -------
+        str
+            Model and reason.
+        """
         is_default = "restitution" in self.assumptions
         label = DEFAULT_RESTITUTION if is_default else self.inputs["restitution"]
-        return headline(label, in_space=not isinstance(self.body, Body))
+        return headline(label, in_space=not isinstance(self.body, Body), is_stated=not is_default, case=case)
 
     @property
     def decides(self) -> str:
