@@ -46,9 +46,10 @@ def headline(label: str, *, in_space: bool = False, is_stated: bool = False, cas
     """
     name = label.removesuffix("-3d")
     model = label_of(name, in_space=True) if in_space and name == DEFAULT_RESTITUTION else label
-    facts = {"model": model, "case": case, "count": len(kept(KEPT)["unseen"])}
+    facts = {"model": model, **({"case": case} if case else {})}
     if is_stated or name != DEFAULT_RESTITUTION:
         return Message(_ASSESSED_STATED if case else _STATED, facts)
+    facts["count"] = len(kept(KEPT)["unseen"])
     if model == name:
         return Message(_ASSESSED if case else _DEFAULT, facts)
     return Message(_ASSESSED_3D if case else _DEFAULT_3D, facts)
