@@ -41,12 +41,12 @@ def headline(label: str, *, in_space: bool = False, is_stated: bool = False, cas
 
     `in_space` is True for a 3D body, `is_stated` for a model that the input states.
 
-    >>> str(headline("ked")), str(headline("calibrated", is_stated=True))[-27:]
-    ('Restitution model of the result: ked, as stated in the input.', 'd, as stated in the input.')
+    >>> str(headline("ked")), str(headline("calibrated", is_stated=True))[-23:]
+    ('Restitution model of the result: ked, as stated in the input.', 'as stated in the input.')
     """
     name = label.removesuffix("-3d")
     model = label_of(name, in_space=True) if in_space and name == DEFAULT_RESTITUTION else label
-    facts = {"model": model, **({"case": case} if case else {})}
+    facts: dict[str, str | int] = {"model": model, **({"case": case} if case else {})}
     if is_stated or name != DEFAULT_RESTITUTION:
         return Message(_ASSESSED_STATED if case else _STATED, facts)
     facts["count"] = len(kept(KEPT)["unseen"])
