@@ -1,7 +1,12 @@
-"""Accuracy of predictions for bodies with hidden base, friction and restitution; a run can be resumed.
+"""Accuracy of predictions for plane bodies with unknown inputs, as in real tests; a run can be resumed.
 
-`make predictions` predicts 2,000 bodies with 256 histories each (3 minutes), stores them in build/predictions.jsonl,
-and prints scores, compared with a logistic in PGA and PGV and with a prediction that assumes a known friction.
+Base, centre of mass, level of the floor, friction and restitution of each body are not known to the prediction. The
+angles and the size of the true body have errors that the prediction knows as model error only. The outcome is a
+simulation of the true geometry.
+
+`make predictions` predicts 2,000 bodies with 256 histories each, stores them in build/predictions.jsonl, and prints the
+scores. It compares them with a logistic curve in PGA and PGV, with a prediction that assumes a known friction, and with
+a prediction of an exact scan: without errors of the centre of mass, the level and the model.
 """
 
 import hashlib
@@ -21,51 +26,81 @@ from rocking.statistics.scores import Forecasts, logistic_left_out
 ROOT = Path(__file__).parents[1]
 RESTITUTION = {"mean": 0.88, "deviation": 0.04}
 BASE, FRICTION, TAKEN_FOR_KNOWN = 0.1, (0.1, 0.8), 0.45
-"""Of the half width at most; and from below to above what keeps these bodies from sliding, so that it decides most."""
+"""Largest inset of a foot / half width, range of the friction from sliding to none, and assumed friction [-]."""
 
-KEYS = ("said", "ignorant", "fell", "motion", "pga", "pgv")
-"""Probability, that of the prediction that takes the friction for known, what happened, and under which motion."""
+CENTRE, OFFSET, LEVEL = (0.97, 1.03), 0.03, 0.006
+"""Factor on the height of the centre of mass, its largest horizontal offset / half width [-], largest slope [rad]."""
+
+UPLIFT, BARRIER = 0.1, 0.2
+"""Standard deviations of ln of the factors on uplift acceleration and energy barrier, bodies and repeated tests [-]."""
+
+EXACT_SCAN = {"centre": 1.0, "offset": 0.0, "level": 0.0, "model_error": "off"}
+WITH_ERRORS = {
+    "centre": CENTRE, "level": (-LEVEL, LEVEL),
+    "model_error": {"mean": [0.0, 0.0], "covariance": [[UPLIFT**2, 0.0], [0.0, BARRIER**2]]},
+}  # fmt: skip
+KEYS = ("predicted", "known_friction", "exact_scan", "overturned", "motion", "pga", "pgv")
+"""Probabilities by three sets of inputs, outcome, motion number, and peaks of the motion [m/s2, m/s]."""
 
 
-def foreseen(number: int, count: int, motions: int) -> dict[str, float]:
-    """Return the probabilities of one body, its true outcome, and its ground motion, by `KEYS`.
-
-    The outcome is a separate simulation of the body with its true feet.
-    """
+def predicted_and_observed(number: int, count: int, motions: int) -> dict[str, float]:
+    """Return the probabilities of overturning of one body, its outcome, and its ground motion, by `KEYS`."""
     random, which = np.random.default_rng([17, number]), number % motions
     shape = (rk.pulses.sine, rk.pulses.cosine, rk.pulses.ricker, rk.pulses.antisymmetric_ricker)[which % 4]
     shaking = np.random.default_rng([71, which])
     motion = shape(shaking.uniform(2.0, 9.0), shaking.uniform(0.4, 1.2))
     height = random.uniform(0.8, 2.5)
     body = rk.Block(width=height * random.uniform(0.2, 0.35), height=height)
-    left, right = random.uniform(0.0, BASE * body.half_width, 2)
-    truly = body.with_feet(body.feet[0] + left, body.feet[1] - right)
+    true = true_body(body, random)
     coefficient = float(np.clip(random.normal(*RESTITUTION.values()), 0.0, 1.0))
-    coefficients = {foot: min(coefficient, energy_bound(truly, foot)) for foot in ("left", "right")}
+    coefficients = {foot: min(coefficient, energy_bound(true, foot)) for foot in ("left", "right")}
     friction, sign = random.uniform(*FRICTION), 1.0 if random.random() < 0.5 else -1.0
-    overturned = rk.simulate_many(
-        truly, motion, coefficients, friction=friction, scale=sign, threads=1
-    ).overturned.item()
-    settings: dict[str, Any] = {"restitution": RESTITUTION, "base": (0.0, BASE * body.half_width), "centre": 1.0}
-    settings |= {"offset": 0.0, "level": 0.0, "model_error": "off"}
-    settings |= {"contributions": False, "seed": number, "threads": 1}
-    predictions = [predict(body, motion, friction=mu, count=count, **settings) for mu in (FRICTION, TAKEN_FOR_KNOWN)]
-    # a share of a finite sample is never quite certain
+    overturned = rk.simulate_many(true, motion, coefficients, friction=friction, scale=sign, threads=1)
+    stated: dict[str, Any] = {"restitution": RESTITUTION, "base": (0.0, BASE * body.half_width), "count": count}
+    stated |= {"contributions": False, "seed": number, "threads": 1}
+    with_errors = WITH_ERRORS | {"offset": (-OFFSET * body.half_width, OFFSET * body.half_width)}
+    inputs = ((FRICTION, with_errors), (TAKEN_FOR_KNOWN, with_errors), (FRICTION, EXACT_SCAN))
+    predictions = [predict(body, motion, friction=mu, **stated, **errors) for mu, errors in inputs]
+    # the fraction of a finite sample is not exactly zero or one
     probabilities = [
         (prediction.chances["overturning"].value * prediction.count + 0.5) / (prediction.count + 1.0)
         for prediction in predictions
     ]
     sampled = motion.sampled(0.005)
-    return dict(
-        zip(KEYS, (*probabilities, overturned, which, sampled.peak, peak_ground_velocity(sampled)), strict=True)
-    )
+    peaks = sampled.peak, peak_ground_velocity(sampled)
+    return dict(zip(KEYS, (*probabilities, overturned.overturned.item(), which, *peaks), strict=True))
+
+
+def true_body(body: rk.Block, random: np.random.Generator) -> rk.MassPoints:
+    """Return the body with its true insets, centre of mass, slope of the floor, angles and size.
+
+    The slope is a change of the angles from the vertical. Two equal masses have the inertia of the block.
+    """
+    insets = random.uniform(0.0, BASE * body.half_width, 2)
+    offset, slope = random.uniform(-OFFSET, OFFSET) * body.half_width, random.uniform(-LEVEL, LEVEL)
+    uplift, barrier = np.exp(random.normal(0.0, (UPLIFT, BARRIER)))
+    size = barrier / uplift**2
+    height = 0.5 * body.height * random.uniform(*CENTRE)
+    signs = np.array([1.0, -1.0])
+    angles = uplift * (np.arctan((body.half_width - insets + signs * offset) / height) + signs * slope)
+    nominal = np.arctan(body.half_width / height)
+    true_height = size * np.hypot(body.half_width, height) * np.cos(uplift * nominal)
+    left, right = true_height * np.tan(angles)
+    radius = size * np.hypot(body.width, body.height) / np.sqrt(12.0)
+    return rk.MassPoints([(-radius, true_height), (radius, true_height)], [0.5, 0.5], feet=(-left, right))
 
 
 def scored(rows: list[dict[str, float]]) -> dict[str, Forecasts]:
-    """Return the scores of the predictions, of those that take the friction for known, and of the logistic."""
-    predicted, ignorant, overturned, motion, pga, pgv = (np.array([row[key] for row in rows]) for key in KEYS)
-    logistic = logistic_left_out(np.log(np.column_stack([pga, pgv])), overturned, motion)
-    by_method = {"predict": predicted, "friction taken for known": ignorant, "logistic, a motion left out": logistic}
+    """Return the scores of the predictions by their inputs, and of a logistic curve from the other motions."""
+    columns = {key: np.array([row[key] for row in rows]) for key in KEYS}
+    overturned, motion = columns["overturned"], columns["motion"]
+    logistic = logistic_left_out(np.log(np.column_stack([columns["pga"], columns["pgv"]])), overturned, motion)
+    by_method = {
+        "predict": columns["predicted"],
+        "assumed friction": columns["known_friction"],
+        "exact scan": columns["exact_scan"],
+        "logistic curve of the other motions": logistic,
+    }
     return {name: Forecasts(probabilities, overturned, motion) for name, probabilities in by_method.items()}
 
 
@@ -99,7 +134,11 @@ def resumed(
 
 def main(cases: int = 2000, count: int = 256, motions: int = 100) -> None:
     """Print the scores."""
-    rows = list(resumed(ROOT / "build" / "predictions.jsonl", cases, foreseen, __file__, count=count, motions=motions))
+    rows = list(
+        resumed(
+            ROOT / "build" / "predictions.jsonl", cases, predicted_and_observed, __file__, count=count, motions=motions
+        )
+    )
     forecasts = scored(rows)
     print("| forecast | Brier | logarithmic | balanced accuracy | calibration z |\n|---|---|---|---|---|")
     for name, forecast in forecasts.items():
@@ -108,7 +147,7 @@ def main(cases: int = 2000, count: int = 256, motions: int = 100) -> None:
             for s in (forecast.brier, forecast.logarithmic, forecast.balanced_accuracy)
         ]
         print(f"| {name} | {' | '.join(cells)} | {forecast.calibration:.2f} |")
-    print("\n| said | happened | 95 % | bodies |\n|---|---|---|---|")
+    print("\n| predicted | observed | 95 % | bodies |\n|---|---|---|---|")
     for step in forecasts["predict"].reliability():
         print(f"| {step.predicted:.3f} | {step.observed:.3f} | {step.low:.3f} to {step.high:.3f} | {step.count} |")
 

@@ -1,6 +1,6 @@
-"""Probabilities are right as often as they say: bodies whose base, friction and restitution are hidden.
+"""Probabilities are right as often as they state, for plane bodies with the errors of real tests.
 
-Here 200 of 32 histories; `make predictions` has 2,000 of 256, and goes on where it stopped.
+These are 200 bodies with 32 histories each; `make predictions` has 2,000 bodies with 256.
 """
 
 import json
@@ -15,36 +15,36 @@ CASES, COUNT, MOTIONS = 200, 32, 40
 
 @pytest.fixture(scope="module")
 def scores():
-    """Scores of the predictions, of those that take the friction for known, and of the logistic."""
-    return predictions.scored([predictions.foreseen(k, COUNT, MOTIONS) for k in range(CASES)])
+    """Scores of the predictions by their inputs, and of the logistic curve."""
+    return predictions.scored([predictions.predicted_and_observed(k, COUNT, MOTIONS) for k in range(CASES)])
 
 
 @pytest.mark.verifies(
-    "repeated sampling", "outcomes of bodies whose base, friction and restitution are hidden", room="studies",
-    control="test_friction_that_is_taken_for_known_is_noticed",
+    "repeated sampling", "outcomes of bodies with unknown base, centre, level, friction, restitution and model error",
+    room="studies", control="test_an_assumed_friction_is_detected",
 )  # fmt: skip
-def test_probabilities_are_right_as_often_as_they_say(scores):
-    """Spiegelhalter's statistic, and every step of the reliability diagram but one."""
-    given = scores["predict"]
-    assert given.left_out == 0
-    assert 0.2 < given.outcome.mean() < 0.8
-    assert abs(given.calibration) < 3.0
-    outside = [each for each in given.reliability() if not each.low <= each.predicted <= each.high]
+def test_probabilities_are_right_as_often_as_they_state(scores):
+    """Spiegelhalter's statistic, and all bins of the reliability diagram except one."""
+    prediction = scores["predict"]
+    assert prediction.left_out == 0
+    assert 0.2 < prediction.outcome.mean() < 0.8
+    assert abs(prediction.calibration) < 2.0
+    outside = [step for step in prediction.reliability() if not step.low <= step.predicted <= step.high]
     assert len(outside) <= 1, outside
 
 
 @pytest.mark.verifies("negative control", room="studies")
-def test_friction_that_is_taken_for_known_is_noticed(scores):
-    """The input that decides most left out: the probabilities are far too sure, and worse."""
-    ignorant = scores["friction taken for known"]
-    assert abs(ignorant.calibration) > 5.0
-    assert scores["predict"].logarithmic.value < ignorant.logarithmic.value
+def test_an_assumed_friction_is_detected(scores):
+    """Without the most important input the probabilities are overconfident, and worse."""
+    assumed = scores["assumed friction"]
+    assert assumed.calibration > 3.0
+    assert scores["predict"].logarithmic.value < assumed.logarithmic.value
 
 
-@pytest.mark.verifies("repeated sampling", "a logistic in PGA and PGV that has not seen the motion", room="studies")
+@pytest.mark.verifies("repeated sampling", "a logistic curve in PGA and PGV from other motions", room="studies")
 def test_not_worse_than_the_plain_logistic(scores):
-    """Brier scores in pairs, motions drawn again."""
-    skill = scores["predict"].skill(scores["logistic, a motion left out"])
+    """Brier scores in pairs, with resampled motions."""
+    skill = scores["predict"].skill(scores["logistic curve of the other motions"])
     assert skill.low > 0.0, skill
 
 
