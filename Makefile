@@ -39,7 +39,7 @@ help:
 	@echo "make clean          remove environments, builds and caches"
 	@echo ""
 	@echo "Long studies; each resumes where it stopped:"
-	@echo "make predictions    score predictions of 2,000 synthetic bodies with unknown base, friction and restitution"
+	@echo "make predictions    score predictions of 2,000 synthetic bodies with the errors of real tests"
 	@echo "make shaking-tests  score predictions of the shaking-table tests present on this machine; update the kept numbers"
 	@echo "make identification count how often the intervals contain the true values, 10,000 synthetic free rockings"
 	@echo "make evidence-sets  the same for omitted groups in 1,000 synthetic sets of measurements"

@@ -1,7 +1,7 @@
 """Accuracy of predictions for plane bodies with unknown inputs, as in real tests; a run can be resumed.
 
-Base, centre of mass, level of the floor, friction and restitution of each body are not known to the prediction. The
-angles and the size of the true body have errors that the prediction knows as model error only. The outcome is a
+Base, centre of mass, level of the floor, friction and restitution of each body are sampled in the prediction. The
+angles and the size of the true body have errors. In the prediction these errors are model error only. The outcome is a
 simulation of the true geometry.
 
 `make predictions` predicts 2,000 bodies with 256 histories each, stores them in build/predictions.jsonl, and prints the
