@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from rocking.decision.prediction import Prediction
 
 R = Display(own=closely(coefficient=".3f"))
-_MAIN = "Main uncertainty: "
 _OUTCOMES = {False: "NO OVERTURNING", True: "OVERTURNING"}
 
 
@@ -30,9 +29,10 @@ def show_subject(page: Page, result: "Prediction", more: str = "") -> None:
     body = result.body
     answer = body.answer(result.gravity) if isinstance(body, Body) else body.answer()
     page.line(body_line(body, answer, Display(), ("slenderness_angle", "semi_diagonal", "frequency_parameter")))
-    count, peaks = len(result.motions), str(result.condition).partition(" (")[2].removesuffix(")")
+    count, facts = len(result.motions), result.condition.facts
     motions = f"Ground motion: {result.motions[0].name}" if count == 1 else f"Ground motions: {count}"
-    page.line(f"{motions}, {peaks}{more}\n")
+    ranges = ": medians and ranges" * (count > 1)
+    page.line(f"{motions}, {facts['peak']}; {facts['velocity']}{ranges}{more}\n")
 
 
 def show_assumed(page: Page, result: "Prediction") -> None:
@@ -60,7 +60,7 @@ def _percent(fraction: float) -> str:
 
 
 def _between(low: float, high: float) -> str:
-    return f"{_percent(low).removesuffix(' %')} to {_percent(high)}"
+    return f"{100.0 * round(low, 3):.3g} to {_percent(high)}"
 
 
 def prediction_values(result: "Prediction") -> list[tuple[str, str]]:
@@ -109,19 +109,16 @@ def assessment_values(result: "BodyAssessment") -> list[tuple[str, str]]:
     peak = f"{peak_name(support_of(motion))} of {factor * motion.peak / g:.3g} g"
     name = "this record" if len(result.motions) == 1 else motion.name
     values = [
-        ("Margin", str(result.margin_sentence).removeprefix("Margin to overturning: ")),
-        (
-            "Uplift",
-            f"{factor:.3g} times {name}, a {peak}.",
-        ),
+        ("Margin", result.margin_value),
+        ("Uplift", f"{factor:.3g} times {name}, a {peak}."),
         ("Overturning probability", f"{chance_text(chance)}."),
     ]
     if len(result.prediction.motions) > 1:
         worst = int(np.nanargmax(chance.per_motion))
         largest = f"{_percent(float(chance.per_motion[worst]))}, under {result.prediction.motions[worst].name}."
         values.append(("Largest of all motions", largest))
-    main = next((str(text) for text in result.governing_factors if str(text).startswith(_MAIN)), "")
-    return [*values, *([("Main uncertainty", main.removeprefix(_MAIN))] if main else [])]
+    main = result.main_uncertainty
+    return [*values, *([("Main uncertainty", main)] if main else [])]
 
 
 def model_cells(rows: list[dict[str, Any]]) -> tuple[str, ...]:
@@ -140,9 +137,10 @@ def measures_of(result: "BodyAssessment") -> Iterable[str]:
     if not is_short or wider.reason or lower.reason or result.standing is not None or remedy.margin != 1.0:
         return result.measures
     period, displacement = remedy.isolation or (0.0, 0.0)
-    edges = [f"{rounded_up(force / 1e3):.3g} kN on the {edge} edge" for edge, force in remedy.tension.items()]
-    if len(edges) == 2 and len({text.partition(" ")[0] for text in edges}) == 1:
-        edges = [f"{edges[0].partition(' ')[0]} kN on each edge"]
+    forces = {edge: f"{rounded_up(force / 1e3):.3g} kN" for edge, force in remedy.tension.items()}
+    edges = [f"{force} on the {edge} edge" for edge, force in forces.items()]
+    if len(forces) == 2 and len(set(forces.values())) == 1:
+        edges = [f"{forces['left']} on each edge"]
     return (
         f"Prevent overturning: base +{millimetres(wider.length_no_overturning)} mm on each side, or centre of mass "
         f"-{millimetres(lower.length_no_overturning)} mm",

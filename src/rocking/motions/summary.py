@@ -177,7 +177,7 @@ _CONDITIONS = {
 }
 
 
-def condition(summaries: Sequence[MotionSummary]) -> str:
+def condition(summaries: Sequence[MotionSummary]) -> Message:
     """Return the condition of a probability as text: the motions and their intensity.
 
     >>> from rocking.motions import pulses

@@ -40,15 +40,15 @@ _DEPENDS = (
 )
 _DEPENDS_UNDER_ONE = "The result depends on the restitution model: the body overturns with {count} of {models}."
 _MARGINS = {  # keys: (True for a single motion, True if the factor is a margin)
-    (True, True): "Margin to overturning: {factor:.3g} times this record ({model}), a {peak} of {acceleration:.3g} g.",
-    (False, True): "Margin to overturning: {factor:.3g} times {motion} ({model}), a {peak} of {acceleration:.3g} g.",
+    (True, True): "{factor:.3g} times this record ({model}), a {peak} of {acceleration:.3g} g.",
+    (False, True): "{factor:.3g} times {motion} ({model}), a {peak} of {acceleration:.3g} g.",
     (True, False): (
-        "Margin to overturning: {factor:.3g} times this record ({model}), a {peak} of {acceleration:.3g} g. The body "
-        "does not overturn under the unscaled motion, so this factor is not a margin."
+        "{factor:.3g} times this record ({model}), a {peak} of {acceleration:.3g} g. The body does not overturn under "
+        "the unscaled motion, so this factor is not a margin."
     ),
     (False, False): (
-        "Margin to overturning: {factor:.3g} times {motion} ({model}), a {peak} of {acceleration:.3g} g. The body "
-        "does not overturn under the unscaled motion, so this factor is not a margin."
+        "{factor:.3g} times {motion} ({model}), a {peak} of {acceleration:.3g} g. The body does not overturn under "
+        "the unscaled motion, so this factor is not a margin."
     ),
 }
 _SIDES = {
@@ -70,7 +70,7 @@ _SLIDES_LATER = (
     "With a friction coefficient of {friction:.3g} (b/h = {slope:.3g}), the body can slide only during rocking: "
     "{result}."
 )
-_MAIN_INPUT = "Main uncertainty: {input} ({share:.0f} % of the variance)."
+_MAIN_INPUT = "{input} ({share:.0f} % of the variance)."
 _NO_MAIN_INPUT = (
     "No single uncertain input is distinguishable (95 %) as the main one. The largest total index of overturning is "
     "that of {input}, {share:.2f}."
@@ -127,6 +127,11 @@ def just_above(factor: float) -> float:
 
 def _degrees(angle: float) -> str:
     return f"{math.degrees(angle) % 360.0:.0f} deg"
+
+
+def _source(name: str) -> Message | str:
+    """Return the label of an input or of the choice of the motion."""
+    return Message("the choice of motion") if name == "case" else input_label(name)
 
 
 @dataclass(frozen=True, eq=False)
@@ -392,9 +397,16 @@ class BodyAssessment:
     @property
     def margin_sentence(self) -> str:
         """Margin to overturning as a sentence."""
+        if math.isinf(self.lowest.factor):
+            return self.margin_value
+        return Message("Margin to overturning: {margin}", {"margin": self.margin_value})
+
+    @property
+    def margin_value(self) -> str:
+        """Value, restitution model and peak acceleration of the margin as text."""
         factor, model, motion, mirrored = self.lowest
         if math.isnan(factor):
-            return "Margin to overturning: not available."
+            return Message("not available.")
         if math.isinf(factor):
             return Message("No computed scale factor on {records} overturns the body.", {"records": self._this})
         mirrored_model = "{model}, mirrored" if self.standing is None else "{model}, rotated by 180 deg"
@@ -470,15 +482,27 @@ class BodyAssessment:
             )
         facts = {"friction": self.friction, "slope": slope, "result": result}
         sentences.append(Message(_SLIDES_FIRST if self.friction < slope else _SLIDES_LATER, facts))
-        shares = {name: item for name, item in self.prediction.contributions.items() if item.total > 0.0}
-        if shares:
-            main = max(shares, key=lambda name: shares[name].total)
-            others = [item.total_high for name, item in self.prediction.contributions.items() if name != main]
-            is_main, share = shares[main].total_low > max(others, default=0.0), min(shares[main].total, 1.0)
-            source = Message("the choice of motion") if main == "case" else input_label(main)
-            text, value = (_MAIN_INPUT, 100.0 * share) if is_main else (_NO_MAIN_INPUT, share)
-            sentences.append(Message(text, {"input": source, "share": value}))
+        if self.main_uncertainty:
+            sentences.append(Message("Main uncertainty: {input}", {"input": self.main_uncertainty}))
+        elif shares := self._shares:
+            main = max(shares, key=shares.__getitem__)
+            sentences.append(Message(_NO_MAIN_INPUT, {"input": _source(main), "share": min(shares[main], 1.0)}))
         return tuple(sentences)
+
+    @property
+    def main_uncertainty(self) -> str:
+        """Input with the largest contribution to the variance as text; empty if no single input is the main one."""
+        shares = self._shares
+        main = max(shares, key=shares.__getitem__, default="")
+        inputs = self.prediction.contributions
+        others = [item.total_high for name, item in inputs.items() if name != main]
+        if not shares or inputs[main].total_low <= max(others, default=0.0):
+            return ""
+        return Message(_MAIN_INPUT, {"input": _source(main), "share": 100.0 * min(shares[main], 1.0)})
+
+    @property
+    def _shares(self) -> dict[str, float]:
+        return {name: item.total for name, item in self.prediction.contributions.items() if item.total > 0.0}
 
     @property
     def measures(self) -> tuple[str, ...]:

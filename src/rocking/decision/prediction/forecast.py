@@ -192,7 +192,7 @@ class Prediction(Exported):
         return tuple(_reasoned(name, reason) for name, reason in self.fixed.items())
 
     @property
-    def condition(self) -> str:
+    def condition(self) -> Message:
         """Condition of all probabilities as text: the motions and their intensity."""
         return condition(self.motions)
 
