@@ -70,7 +70,9 @@ def prediction_values(result: "Prediction") -> list[tuple[str, str]]:
         ("Rocking", chance_text(result.chances["uplift"])),
         (f"Sliding by {1000.0 * result.sliding_beyond:g} mm or more", chance_text(result.chances["sliding"])),
     ]
-    return values + [(f"Overturning with {name}", chance_text(chance)) for name, chance in result.beside.items()]
+    samples = f"{result.count // 4} of {result.count} samples"
+    others = [(f"Overturning with {name} ({samples})", chance_text(chance)) for name, chance in result.beside.items()]
+    return values + others
 
 
 def headline_of(result: "BodyAssessment") -> str:
