@@ -249,7 +249,7 @@ def test_what_no_ground_does_is_doubted(tmp_path) -> None:
 
 
 def test_the_provenance_contains_the_warnings_of_the_used_values(tmp_path) -> None:
-    """A record that does not come to rest; after a baseline correction the warning is omitted, as is the cause."""
+    """A record that does not come to rest; without its mean acceleration it does, and the warning is omitted."""
     from rocking.spec.construction import motion_of
     from rocking.spec.motion_tables import OneMotionTable
     from rocking.spec.reading import InputFiles
@@ -271,4 +271,4 @@ def test_the_provenance_contains_the_warnings_of_the_used_values(tmp_path) -> No
     doubt = "record.txt: the integrated velocity ends at"
     assert sum(doubt in line for line in read) == 1
     assert sum(doubt in line for line in provenance()) == 1
-    assert not any(doubt in line for line in provenance(process=["baseline:order=1"]))
+    assert not any(doubt in line for line in provenance(process=["mean"]))
