@@ -16,6 +16,7 @@ from rocking.cli.numbers import row
 from rocking.cli.page import Page, bar, deliver
 from rocking.cli.spelling import UsageError
 from rocking.conventions import percent
+from rocking.messages import Message
 from rocking.quantities import Quantity, closely
 
 if TYPE_CHECKING:
@@ -107,7 +108,8 @@ def code_checks(
             ), problem,
         )  # fmt: skip
     result = replace(result, bodies=_names(problem, Display(arguments.length or "m")))
-    deliver(CodesAnswer(result, others, details), exports, as_json=as_json)
+    cautions = tuple(dict.fromkeys(body.caution for body in problem.bodies if body.caution))
+    deliver(CodesAnswer(result, others, cautions, details), exports, as_json=as_json)
 
 
 def _problem(arguments: "Arguments") -> "StudyProblem":
@@ -164,6 +166,7 @@ class CodesAnswer:
 
     result: "CodeComparison"
     others: dict[str, Any]  # results of the compared models
+    cautions: tuple[str, ...]  # bodies with a depth that is the weaker side
     details: bool = False
 
     def answer(self) -> Answer:
@@ -171,7 +174,8 @@ class CodesAnswer:
         from rocking.decision.code_methods import LEFT_OUT
 
         models = model_facts(self.result.restitution, self.others, _overturned)
-        return self.result.answer() | {"left_out": LEFT_OUT, **models}
+        caution = {"caution": Message.joined(self.cautions)} if self.cautions else {}
+        return self.result.answer() | {"left_out": LEFT_OUT, **caution, **models}
 
     def show(self, page: Page) -> None:
         from rocking.cli.study import source_lines
@@ -184,6 +188,8 @@ class CodesAnswer:
             *source_lines(result.sources),
             ("histories", f"{int(outcomes.sum())} of {outcomes.size} overturned, restitution {result.restitution}"),
         ])  # fmt: skip
+        for caution in self.cautions:
+            page.line(caution)
         page.line()
         rows = [_row(result, method.name) for method in result.methods]
         page.rows(rows, _SHOWN, Display(own=_OWN), most=len(rows), dense=False)

@@ -100,3 +100,13 @@ def test_vertical_motion_is_in_the_answer(printed, answered, tmp_path):
     ratio = found["methods"]["static"]["called_safe"][0][0]["limit_ratio"]
     assert ratio == pytest.approx((0.6 + 0.2 / 1.5) * 1.5, rel=1e-8)
     assert answered(*words)["methods"]["static"]["called_safe"][0][0]["limit_ratio"] == pytest.approx(0.9, rel=1e-8)
+
+
+def test_a_depth_that_is_the_weaker_side_is_stated(printed, answered):
+    """The caution of the other commands; without it if the width is the weaker side."""
+    size = ("--height", 2, "sine:amplitude=3,period=0.8")
+    weak, strong = ("--width", 1.2, "--depth", 0.6), ("--width", 0.6, "--depth", 1.2)
+    assert "The depth of 0.6 m is smaller" in answered(*size, *weak)["caution"]
+    assert "The depth of 0.6 m is smaller" in " ".join(printed(*size, *weak).split())
+    assert "caution" not in answered(*size, *strong)
+    assert "smaller" not in printed(*size, *strong)
