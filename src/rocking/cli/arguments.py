@@ -233,6 +233,10 @@ class Arguments:
         if set(self.sizes) not in map(set, _SIZES):
             if "width" not in self.options:
                 raise UsageError("No body. Give a body file")
+            if "depth" in values and "width" not in self.sizes:
+                raise UsageError(
+                    "No width. --depth is across the motion. Give the dimension along the motion as --width"
+                )
             raise UsageError(
                 "No complete body: got {options}. Give a body file, --width and --height, or --set "
                 "body.slenderness_angle and body.semi_diagonal", options=" ".join(self.sizes.values()) or "no option",

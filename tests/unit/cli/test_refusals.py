@@ -260,6 +260,7 @@ REFUSED = {
         "times.csv SMALL --set identify.tlt=0": "did you mean tilt",
         "times.csv SMALL --set measurement.kind=smell": "kind must be",
         "times.csv --width 1": "No complete body",
+        "times.csv --depth 1 --height 2": "No width. --depth is across the motion",
         "times.csv SMALL --output found.docx": "unknown extension",
         "empty": "No trials. Use files with",
     },
