@@ -252,14 +252,9 @@ def before_processing() -> Iterator[None]:
         _RAW.reset(token)
 
 
-def is_unprocessed() -> bool:
-    """Return True if processing steps follow, in a context of `before_processing`."""
-    return _RAW.get()
-
-
 def warn_of_values(sentences: Iterable[str]) -> None:
     """Issue warnings about the values of a motion, unless processing steps follow."""
-    if not is_unprocessed():
+    if not _RAW.get():
         warn(sentences)
 
 

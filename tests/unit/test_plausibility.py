@@ -246,29 +246,3 @@ def test_what_no_ground_does_is_doubted(tmp_path) -> None:
             warnings.simplefilter("always")
             rk.read_motion(path, units="m/s2")
         assert [words in str(one.message) for one in said] == ([True] if words else [])
-
-
-def test_the_provenance_contains_the_warnings_of_the_used_values(tmp_path) -> None:
-    """A record that does not come to rest; without its mean acceleration it does, and the warning is omitted."""
-    from rocking.spec.construction import motion_of
-    from rocking.spec.motion_tables import OneMotionTable
-    from rocking.spec.reading import InputFiles
-
-    time = np.arange(0.0, 20.0, 0.01)
-    lines = (f"{t:.2f} {0.03 + np.sin(np.pi * t) * math.exp(-t):.6f}" for t in time)
-    path = tmp_path / "record.txt"
-    path.write_text("\n".join(lines))
-
-    def provenance(**keys):
-        table = OneMotionTable(record=path.name, units="m/s2", **keys)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            return motion_of(table, InputFiles(tmp_path)).provenance
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        read = rk.read_motion(path, units="m/s2").provenance
-    doubt = "record.txt: the integrated velocity ends at"
-    assert sum(doubt in line for line in read) == 1
-    assert sum(doubt in line for line in provenance()) == 1
-    assert not any(doubt in line for line in provenance(process=["mean"]))

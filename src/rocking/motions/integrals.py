@@ -204,15 +204,6 @@ def integral_doubts(motion: GroundMotion) -> tuple[str, ...]:
     return plausibility.of_integrals(*ends)
 
 
-def with_integral_doubts(motion: GroundMotion, name: str) -> GroundMotion:
-    """Return a motion with the warnings about its integrals in its provenance. The warnings are also issued."""
-    doubts = [f"{name}: {doubt}" for doubt in integral_doubts(motion)]
-    plausibility.warn(doubts)
-    for doubt in doubts:
-        motion = motion.changed(doubt)
-    return motion
-
-
 def velocity_of(samples: FloatArray, time_step: float) -> FloatArray:
     """Return the integral of the straight lines between samples [m/s2, s, m/s]."""
     return _summed(0.5 * time_step * (samples[:-1] + samples[1:]))  # Eq. 147

@@ -16,7 +16,7 @@ from rocking.errors import InvalidValueError, located
 from rocking.motions.components import Components
 from rocking.motions.formats.file_options import by_path
 from rocking.motions.formats.reader import read_motion
-from rocking.motions.integrals import with_integral_doubts
+from rocking.motions.integrals import integral_doubts
 from rocking.motions.pipeline import processed
 from rocking.motions.pulses import pulse
 from rocking.restitution import RestitutionModel, model
@@ -199,8 +199,8 @@ def doubted_once(read: Callable[[], Any], name: str) -> Any:
     """Return a record after its processing steps. Warnings about values refer to the processed record."""
     with plausibility.before_processing():
         motion = read()
-    plausibility.warn(f"{name}: {doubt}" for doubt in motion.doubts)
-    return with_integral_doubts(motion, name)
+    plausibility.warn(f"{name}: {doubt}" for doubt in (*motion.doubts, *integral_doubts(motion)))
+    return motion
 
 
 def _unprocessed(path: Path, table: "MotionKeys", inputs: InputFiles) -> "Motion":
@@ -226,9 +226,11 @@ def components_of(table: "ComponentsTable | MotionTable", inputs: InputFiles | N
         with plausibility.before_processing():
             parts = processed(components, steps).parts
         motions = {axis: motion for axis, motion in zip("xyz", parts, strict=True) if motion is not None}
-        for axis, motion in motions.items():
-            plausibility.warn(f"{axis}: {doubt}" for doubt in motion.doubts)
-            motions[axis] = with_integral_doubts(motion, axis)
+        plausibility.warn(
+            f"{axis}: {doubt}"
+            for axis, motion in motions.items()
+            for doubt in (*motion.doubts, *integral_doubts(motion))
+        )
     factors = {axis: axis_table.scale * scale for axis, axis_table in tables.items()}
     return {axis: motion if factors[axis] == 1.0 else motion.scaled(factors[axis]) for axis, motion in motions.items()}
 

@@ -15,7 +15,7 @@ from rocking.motions.components import with_vertical
 from rocking.motions.formats import directions
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source
 from rocking.motions.formats.stations import Places
-from rocking.motions.integrals import with_integral_doubts
+from rocking.motions.integrals import integral_doubts
 from rocking.motions.motion import GroundMotion
 
 _STARTS = ("starttime", "Record Time", "first time")
@@ -324,7 +324,8 @@ def _motion(source: Source, record: Record, component: Component) -> GroundMotio
     if quiet := plausibility.of_quiet(motion.peak):
         motion = motion.changed(f"{source.name}: {quiet[0]}")
         plausibility.warn_of_values(f"{source.name}: component {component.name}: {doubt}" for doubt in quiet)
-    return motion if plausibility.is_unprocessed() else with_integral_doubts(motion, source.name)
+    plausibility.warn_of_values(f"{source.name}: {doubt}" for doubt in integral_doubts(motion))
+    return motion
 
 
 def _direction(source: Source, record: Record, component: Component) -> directions.Direction:
