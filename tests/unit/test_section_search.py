@@ -12,7 +12,7 @@ from section_search import entries, plain
 
 
 @pytest.mark.parametrize(
-    ("latex", "words"),
+    ("latex", "text"),
     [
         (r"a_{\mathrm{p}}/(g\,\tan\alpha)", "a_p/(g tan alpha)"),
         (r"\dot\theta_2 = \sqrt{3g/(4R)}", "dot theta_2 = sqrt(3g/(4R))"),
@@ -20,9 +20,9 @@ from section_search import entries, plain
         (r"\left(\frac{\frac{a}{b}}{c}\right)", "(((a)/(b))/(c))"),
     ],
 )
-def test_a_formula_becomes_words(latex, words):
+def test_a_formula_becomes_words(latex, text):
     """Commands of layout disappear, fractions and roots keep their meaning, and names stay separate words."""
-    assert plain(latex) == words
+    assert plain(latex) == text
 
 
 def test_titles_and_texts_of_the_search_contain_no_latex():

@@ -124,7 +124,7 @@ def test_a_conservator_with_a_scan(tmp_path, capsys, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("words", "title"),
+    ("arguments", "title"),
     [
         (["cabinet.toml"], "Cabinet 7"),
         (["shelf.toml"], "shelf"),
@@ -132,7 +132,7 @@ def test_a_conservator_with_a_scan(tmp_path, capsys, monkeypatch):
         (["--width", "0.5", "--height", "2", "site.csv"], "A body in an earthquake"),
     ],
 )
-def test_the_title_of_a_report_is_the_name_of_the_body(printed, tmp_path, monkeypatch, words, title):
+def test_the_title_of_a_report_is_the_name_of_the_body(printed, tmp_path, monkeypatch, arguments, title):
     """The title is the key name of the body file, or the name of the file; it is never the name of the record."""
     monkeypatch.chdir(tmp_path)
     block = "[block]\nwidth = 0.5\nheight = 2.0\n"
@@ -140,8 +140,8 @@ def test_the_title_of_a_report_is_the_name_of_the_body(printed, tmp_path, monkey
     Path("shelf.toml").write_text(f'units = "m"\n{block}', "utf-8")
     rows = "\n".join(f"{0.01 * k:.2f},{4.0 * (-1) ** (k // 40):.1f}" for k in range(160))
     Path("site.csv").write_text(f"time [s],acceleration [m/s2]\n{rows}\n", "utf-8")
-    motion = [] if words[-1] == "site.csv" else [PULSE]
-    printed(*words, *motion, *FEW, "--output", "report.html")
+    motion = [] if arguments[-1] == "site.csv" else [PULSE]
+    printed(*arguments, *motion, *FEW, "--output", "report.html")
     assert f"<title>{title}</title>" in Path("report.html").read_text("utf-8")
 
 

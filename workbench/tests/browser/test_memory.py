@@ -98,14 +98,14 @@ def test_it_does_not_grow(open_page: Callable[..., Any], tmp_path: Path) -> None
 
 
 def test_what_grows_is_seen(open_page: Callable[..., Any]) -> None:
-    """Negative control: a script that keeps nodes and listeners at every click: five times the limit, or more."""
+    """Negative control: a script that keeps nodes and their listeners at every click."""
     page = open_page(link())
     turns = interactions(page, scanned=False)
     grown(page, turns, 10)  # every step has been shown
     page.evaluate("""() => {
       window.kept = [];
       document.addEventListener("click", () => {
-        for (let k = 0; k < 300; k += 1) {
+        for (let k = 0; k < 600; k += 1) {
           const node = document.createElement("p");
           node.addEventListener("click", () => kept.length);
           kept.push(node);
@@ -113,5 +113,5 @@ def test_what_grows_is_seen(open_page: Callable[..., Any]) -> None:
       });
     }""")
     found = grown(page, turns, 10)
-    assert found["nodes"] > 0.1, found
-    assert found["listeners"] > 0.1, found
+    assert found["nodes"] > 0.3, found
+    assert found["listeners"] > 1.0, found
