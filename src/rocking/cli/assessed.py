@@ -12,7 +12,7 @@ from rocking.cli.numbers import body_line
 from rocking.cli.page import Page
 from rocking.conventions import Assumed, g, percent
 from rocking.decision.prediction.forecast import Chance
-from rocking.decision.remedies import CALIBRATED, millimetres, rounded_up
+from rocking.decision.remedies import millimetres, rounded_up
 from rocking.motions.summary import peak_name, support_of
 from rocking.quantities import closely
 
@@ -92,14 +92,12 @@ def headline_of(result: "BodyAssessment") -> str:
 
 def _of_models(result: "BodyAssessment", *, all_cases: bool = False) -> str:
     """Return the number of models with overturning and of interval ends; or of all with `all_cases`."""
-    ends = [name for name in result.models if name.startswith(f"{CALIBRATED}, ")]
-    others = [name for name in result.models if name not in ends]
-    values = sum(name.startswith("r = ") for name in others)
-    nouns = {"model" if not values else "coefficient" if values == len(others) else "case": others, "end": ends}
+    from rocking.decision.assessment.answer import cases_by_kind
+
     texts = []
-    for noun, names in nouns.items():
+    for kind, names in cases_by_kind(result.models).items():
         overturned = sum(result.count_overturned(result.models[name]) > 0 for name in names)
-        numbers = f"{len(names)} {noun}{'s' * (len(names) != 1)}" + " of the 95 % interval" * (names is ends)
+        numbers = f"{len(names)} {kind}{'s' * (len(names) != 1)}" + " of the 95 % interval" * (kind == "end")
         texts += [numbers if all_cases else f"{overturned} of {numbers}"] if names else []
     return ", ".join(texts)
 

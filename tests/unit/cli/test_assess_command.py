@@ -120,7 +120,7 @@ def test_a_weaker_depth_is_on_the_page(printed, answered, tmp_path):
     verdict, report = answer["verdict"], tmp_path / "report.html"
     assert answer["caution"] in verdict
     lines = printed(*options, "-o", report).splitlines()
-    assert lines[3:5] == ["NO UPLIFT (0 of 1 motion, 2 cases, both polarities)", answer["caution"]]
+    assert lines[3:5] == ["NO UPLIFT (0 of 1 motion, 1 model, 1 coefficient, both polarities)", answer["caution"]]
     shown = report.read_text(encoding="utf-8")
     assert verdict in shown
     assert f'<p class="fair">{verdict}' in shown

@@ -1,7 +1,7 @@
 """Result of an assessment: outcome and margin with each model, and the sentences on them."""
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -105,9 +105,7 @@ _ISOLATORS = (
 
 def _cases(names: Collection[str]) -> Message:
     """Return the number of restitution cases, and of the models, coefficients and interval ends among them."""
-    ends = sum(name.startswith(f"{CALIBRATED}, ") for name in names)
-    values = sum(name.startswith("r = ") for name in names)
-    models = len(names) - ends - values
+    models, values, ends = map(len, cases_by_kind(names).values())
     counts = [
         (models, Message("{count} model", {"count": models}, "{count} models")),
         (values, Message("{count} coefficient", {"count": values}, "{count} coefficients")),
@@ -118,6 +116,15 @@ def _cases(names: Collection[str]) -> Message:
         first = Message("{first}, {second}", {"first": first, "second": other})
     facts = {"count": len(names), "parts": first}
     return Message("{count} restitution case ({parts})", facts, "{count} restitution cases ({parts})")
+
+
+def cases_by_kind(names: Iterable[str]) -> dict[str, list[str]]:
+    """Return the restitution cases: models, coefficients, and ends of the interval of the calibrated model."""
+    kinds: dict[str, list[str]] = {"model": [], "coefficient": [], "end": []}
+    for name in names:
+        is_end, is_coefficient = name.startswith(f"{CALIBRATED}, "), name.startswith("r = ")
+        kinds["end" if is_end else "coefficient" if is_coefficient else "model"].append(name)
+    return kinds
 
 
 def just_above(factor: float) -> float:
