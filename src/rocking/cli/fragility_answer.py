@@ -249,7 +249,8 @@ class FragilityAnswer:
         if self.shown is None or not self.shown.adjusted:
             return []
         if self._adjusted() and not self.details:
-            return ["The curves have a common dispersion, because separately fitted curves cross (--details)."]
+            text = "The curves have a common dispersion and no intervals, because separately fitted curves cross"
+            return [f"{text} (--details)."]
         lines = [str(self.shown.adjusted)]
         for name in self._adjusted():
             summary, texts = self.first.fits[name].summary(), []

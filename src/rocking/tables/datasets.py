@@ -26,7 +26,7 @@ def save(dataset: "xr.Dataset", path: str | PathLike[str]) -> Path:
     Parameters
     ----------
     dataset : xarray.Dataset
-        Results over dimensions, such as those of `simulate_many` or of the method `dataset` of a study.
+        Results over dimensions, such as those of `simulate_many`, `overturning_map` and `rocking_spectrum`.
     path : path-like
         File: .nc, .csv, .xlsx or .mat.
 
@@ -38,7 +38,8 @@ def save(dataset: "xr.Dataset", path: str | PathLike[str]) -> Path:
     Raises
     ------
     InvalidValueError
-        If the extension is none of these, the folder does not exist, or the table is too large for the format.
+        If the extension is none of these, the folder does not exist, no variable has all dimensions (except in netCDF
+        files), or the table is too large for the format.
     MissingExtraError
         If the module for the format is not installed.
 
@@ -72,6 +73,11 @@ def _cells(dataset: "xr.Dataset") -> Table:
     """Return a dataset as a table with one row per cell."""
     dataset = dataset.drop_dims("point", errors="ignore")  # the table does not contain the points of a refined map
     over = max(dataset.data_vars.values(), key=lambda variable: variable.ndim)
+    if missing := set(map(str, dataset.sizes)) - set(map(str, over.dims)):
+        raise InvalidValueError(
+            "no variable has all dimensions: {name} is without {dims}", name=over.name, dims=", ".join(sorted(missing)),
+            hint="use .nc",
+        )  # fmt: skip
     names = (*over.dims, *dataset.data_vars, *(name for name in dataset.coords if name not in over.dims))
     rows = {name: dataset[name].broadcast_like(over).transpose(*over.dims).values.ravel() for name in names}
     codes = {name: QUANTITIES[name].codes if name in QUANTITIES else {} for name in map(str, names)}

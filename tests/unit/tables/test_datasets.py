@@ -68,3 +68,11 @@ def test_other_files_are_refused(batch, tmp_path, name):
     with pytest.raises(InvalidValueError):
         save(batch, tmp_path / name)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_table_needs_a_variable_with_all_dimensions(batch, tmp_path):
+    """A variable of another dimension has no cell in the table; a netCDF file contains it."""
+    more = batch.assign(other=("number", [1.0, 2.0]))
+    with pytest.raises(InvalidValueError, match=r"is without number.*use \.nc"):
+        save(more, tmp_path / "batch.csv")
+    assert save(more, tmp_path / "batch.nc").exists()
