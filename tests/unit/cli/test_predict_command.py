@@ -1,6 +1,7 @@
 """`rocking predict`: the same as in Python, from options and from a file; files, refusals."""
 
 import json
+import math
 from pathlib import Path
 
 import bad_scans
@@ -19,7 +20,8 @@ DOCS = Path(__file__).parents[3] / "docs" / "how_to" / "assessment.md"
 SIZE = ("--width", "0.5", "--height", "2")
 PULSE = "sine:amplitude=4.2,period=0.8"
 FEW = ("--set", "predict.count=16")
-FAST = ("--count", "1", "--set", "motion.pga=5", "--set", "predict.count=4", "--set", "predict.contributions=false")
+FAST = ("--set", "predict.count=4", "--set", "predict.contributions=false")
+ONE = ("--count", "1", "--set", "motion.pga=5")
 FILE = """
 [body]
 units = "cm"
@@ -105,11 +107,13 @@ def test_a_conservator_with_a_scan(tmp_path, capsys, monkeypatch):
     trimesh.Trimesh(1000.0 * vertices[:-1], sides, process=False).export(tmp_path / "statue.stl")
     text = DOCS.read_text("utf-8").partition("## Compute a probability from a scan")[2]
     commands = [line.split()[1:] for line in text.partition("\n\n```\n")[2].partition("```")[0].splitlines()]
-    assert [words[0] for words in commands] == ["equilibria", "predict", "predict"]
+    assert [words[0] for words in commands] == ["equilibria", "predict", "predict", "predict"]
+    rows = [f"{0.01 * step:.2f},{3.0 * math.sin(0.06 * step):.6f}" for step in range(400)]
+    (tmp_path / "record.csv").write_text("\n".join(["time (s),acceleration (m/s2)", *rows]), "utf-8")
     monkeypatch.chdir(tmp_path)
     said = []
     for words in commands:
-        few = FAST if words[0] == "predict" else []
+        few = (*FAST, *(ONE if "--synthetic" in words else ())) if words[0] == "predict" else ()
         with pytest.raises(SystemExit) as stop:
             main([*words, *few])
         assert stop.value.code in {0, None}
@@ -117,7 +121,8 @@ def test_a_conservator_with_a_scan(tmp_path, capsys, monkeypatch):
     assert "stable poses" in said[0]
     assert "Overturning is " in said[1]
     assert "given this motion (PGA " in said[1]
-    assert said[1].partition("wrote")[0] == said[2].partition("wrote")[0]
+    assert "record" in said[1]
+    assert said[2].partition("wrote")[0] == said[3].partition("wrote")[0] != said[1].partition("wrote")[0]
     assert all("! closed the open bottom" in each for each in said)
     assert (tmp_path / "statue.png").read_bytes().startswith(b"\x89PNG")
     assert (tmp_path / "statue.pdf").read_bytes().startswith(b"%PDF")
