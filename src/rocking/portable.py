@@ -27,6 +27,9 @@ def _sum(terms: Iterable[float]) -> float:
 
 def dot(left: FloatArray, right: FloatArray) -> float:
     """Return the scalar product of two vectors."""
+    if left.size == right.size == 3:
+        (a, b, c), (x, y, z) = left.tolist(), right.tolist()
+        return float(0.0 + a * x + b * y + c * z)
     return float(_sum(map(mul, left.tolist(), right.tolist())))
 
 
@@ -42,6 +45,9 @@ def applied(matrix: FloatArray, vector: FloatArray) -> FloatArray:
     [-1.0, -1.0]
     """
     if matrix.ndim == 2 and vector.ndim == 1 and len(matrix) <= _FEW:
+        if vector.size == 3:
+            x, y, z = vector.tolist()
+            return np.array([0.0 + a * x + b * y + c * z for a, b, c in matrix.tolist()], dtype=np.float64)
         other = vector.tolist()
         return np.array([_sum(map(mul, row, other)) for row in matrix.tolist()], dtype=np.float64)
     return np.asarray((matrix * vector[..., None, :]).sum(axis=-1))
@@ -72,14 +78,14 @@ def gram(rows: FloatArray, weights: FloatArray) -> FloatArray:
     return result
 
 
-def convolved(left: FloatArray, right: FloatArray) -> FloatArray:
-    """Return the coefficients of the product of two polynomials.
+def convolved(left: FloatArray, right: FloatArray, count: int | None = None) -> FloatArray:
+    """Return the coefficients of the product of two polynomials, or the first `count` coefficients.
 
     >>> convolved(np.array([1.0, 2.0]), np.array([1.0, 0.0, 3.0])).tolist()
     [1.0, 2.0, 3.0, 6.0]
     """
     terms, other = left.tolist(), [*right.tolist(), *[0.0] * (len(left) - 1)]
-    return np.array([_sum(map(mul, terms, other[k::-1])) for k in range(len(other))])
+    return np.array([_sum(map(mul, terms, other[k::-1])) for k in range(len(other))[:count]])
 
 
 def solution(matrix: FloatArray, vector: FloatArray) -> FloatArray:

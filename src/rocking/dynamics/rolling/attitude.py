@@ -29,6 +29,9 @@ _NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])
 
 def cross(left: FloatArray, right: FloatArray) -> FloatArray:
     """Return the vector product. For single vectors, this function is faster than numpy."""
+    if left.ndim == right.ndim == 1:
+        (a, b, c), (x, y, z) = left.tolist(), right.tolist()
+        return np.array([b * z - c * y, c * x - a * z, a * y - b * x])
     return np.asarray(left[..., _NEXT] * right[..., _LAST] - left[..., _LAST] * right[..., _NEXT])
 
 
@@ -37,6 +40,12 @@ def matrix(quaternion: FloatArray) -> FloatArray:
     q = quaternion.tolist() if quaternion.ndim == 1 else list(np.moveaxis(quaternion, -1, 0))
     rotation: FloatArray = np.array(rows_of([[a * b for b in q] for a in q]))
     return rotation if quaternion.ndim == 1 else np.moveaxis(rotation, (0, 1), (-2, -1))
+
+
+def vertical(quaternion: FloatArray) -> FloatArray:
+    """Return the vertical in body axes, the last row of `matrix` [-]."""
+    s, x, y, z = quaternion.tolist()
+    return np.array([2.0 * (x * z - s * y), 2.0 * (y * z + s * x), s * s - x * x - y * y + z * z])
 
 
 def turn(axis: FloatArray | list[float], angle: float) -> FloatArray:

@@ -43,7 +43,7 @@ def first_zero(series: FloatArray, *, started: bool, floor: float = 0.0) -> floa
 
 def cauchy(left: FloatArray, right: FloatArray) -> FloatArray:
     """Return the product of two series, up to the order of the first series."""
-    return convolved(left, right[: len(left)])[: len(left)]
+    return convolved(left, right[: len(left)], len(left))
 
 
 def dot(left: FloatArray, right: FloatArray) -> FloatArray:
@@ -61,7 +61,9 @@ def square_root(square: FloatArray) -> FloatArray:
 
 def padded(series: FloatArray, count: int) -> FloatArray:
     """Return a series, cut or padded with zeros to a length."""
-    return np.pad(series, (0, max(0, count - len(series))))[:count]
+    result = np.zeros(count)
+    result[: len(series)] = series[:count]
+    return result
 
 
 SLOW_OPENING = 1e-9  # smaller accelerations of a gap over gravity count as zero, as in the choice of contacts
@@ -82,6 +84,10 @@ class Step:
     # gravity minus the acceleration of the ground, in axes of the ground [m/s2]; shape (3, degree + 1)
     field: FloatArray
     heading: FloatArray  # direction of the edge in contact, on the ground [-]; zero without an edge; shape (3,)
+
+
+Forces = tuple[FloatArray, FloatArray | None]
+"""Series of a step: the vertical force per unit mass, and that at the second end of an edge [N/kg]."""
 
 
 def watched(body: SpatialBody, contact: ContactSet) -> tuple[int, ...]:
@@ -150,17 +156,21 @@ def rim_events(body: SpatialBody, contact: ContactSet, step: Step, *, landing: b
     return min((at for at in zeros if at is not None), default=None)
 
 
-def first_release(body: SpatialBody, contact: ContactSet, step: Step) -> tuple[float, int] | None:
+def vertical_forces(body: SpatialBody, contact: ContactSet, step: Step) -> Forces:
+    """Return the vertical force per unit mass as a series, and that at the second end of an edge [N/kg]."""
+    return _normal(body, contact, step), None if contact.axis is None else _second(body, contact, step)
+
+
+def first_release(body: SpatialBody, contact: ContactSet, step: Step, forces: Forces) -> tuple[float, int] | None:
     """Return time over the step and index of the end of the first release; None if there is no release."""
     # An end of an edge is released if its force is tensile and its gap opens. If the gap does not open (friction at
     # this end keeps the gap closed, so that neither the edge nor its other end alone is consistent), the edge stays in
     # contact. The tensile force is then visible in `end_forces`; a real corner would slip. The index is -1 if all
     # contact is released.
-    normal = _normal(body, contact, step)
+    normal, second = forces
     lost = first_zero(normal, started=False)
     releases = [] if lost is None else [(lost, -1)]
-    if contact.axis is not None:
-        second = _second(body, contact, step)
+    if second is not None:
         for end_index, force in ((0, normal - second), (1, second)):
             if force[0] - np.abs(force[1:]).sum() > 0.0:
                 continue
@@ -170,10 +180,10 @@ def first_release(body: SpatialBody, contact: ContactSet, step: Step) -> tuple[f
     return min(releases, default=None)
 
 
-def end_forces(body: SpatialBody, contact: ContactSet, step: Step, at: float) -> tuple[float, float]:
+def end_forces(forces: Forces, at: float) -> tuple[float, float]:
     """Return the vertical forces per unit mass at both ends of an edge [N/kg]. A negative force is tensile."""
-    second = value(_second(body, contact, step).tolist(), at)
-    return value(_normal(body, contact, step).tolist(), at) - second, second
+    normal, second = (0.0 if series is None else value(series.tolist(), at) for series in forces)
+    return normal - second, second
 
 
 def _opens(force: FloatArray, opening: FloatArray) -> float | None:

@@ -114,7 +114,8 @@ class SpatialReference:
         if step is None or piece is None:
             return Outcome.FAILED, Status.NOT_FINITE
         landing = event_functions.first_contact(self.body, self.contact, step, self.touching)
-        release = event_functions.first_release(self.body, self.contact, step)
+        forces = event_functions.vertical_forces(self.body, self.contact, step)
+        release = event_functions.first_release(self.body, self.contact, step, forces)
         rim_event = None
         if self.body.round:
             rim_event = event_functions.rim_events(self.body, self.contact, step, landing=self.landing)
@@ -136,12 +137,12 @@ class SpatialReference:
             return self._rim()
         if release is not None and release[0] == arrival:
             return self._released(release[1])
-        return self._stepped(step, arrival, held=is_held)
+        return self._stepped(step, arrival, forces, held=is_held)
 
-    def _stepped(self, step: Step, at: float, *, held: bool) -> Ending:
+    def _stepped(self, step: Step, at: float, forces: event_functions.Forces, *, held: bool) -> Ending:
         """Check the state at the end of a step without an event."""
         pulls = self.contact.mode is ContactMode.EDGE
-        pulls = pulls and min(event_functions.end_forces(self.body, self.contact, step, at)) < -self.pull
+        pulls = pulls and min(event_functions.end_forces(forces, at)) < -self.pull
         self.integration_state.held += step.length if pulls or held else 0.0
         self.touching = ()
         if self.body.round and event_functions.nearly_flat(self.body, self._up) and self._weak:
@@ -311,7 +312,7 @@ class SpatialReference:
 
     @property
     def _up(self) -> FloatArray:
-        return np.asarray(attitude.matrix(self.quaternion)[2])
+        return attitude.vertical(self.quaternion)
 
     @property
     def _pivot(self) -> FloatArray:

@@ -219,7 +219,7 @@ class IntegrationState:
         self, time: float, quaternion: FloatArray, velocity: FloatArray, pivot: FloatArray, final: bool | None
     ) -> tuple[Outcome, Status] | None:
         """Return outcome and status of a body that has fallen or cannot overturn any more; None otherwise."""
-        up = attitude.matrix(quaternion)[2]
+        up = attitude.vertical(quaternion)
         if up[2] <= 0.0:
             self.over_time = time if math.isnan(self.over_time) else self.over_time
             return Outcome.OVERTURNED, Status.GOOD
@@ -268,7 +268,7 @@ class IntegrationState:
         low, high = 0.0, until
         for _ in range(_BISECTIONS):
             middle = 0.5 * (low + high)
-            up = attitude.matrix(piece.at(np.array([middle]))[0][0])[2]
+            up = attitude.vertical(piece.at(np.array([middle]))[0][0])
             beyond = _beyond_contact(self.body, up, complementarity.touching_point(self.body, piece.contact, up)) > 0.0
             low, high = (low, middle) if beyond else (middle, high)
         return piece.start + high * piece.length
