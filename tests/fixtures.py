@@ -16,6 +16,10 @@ from hypothesis import settings
 # Shells start what runs in their background with Ctrl-C ignored; tests press it, in processes of their own too.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
+# Threads of linear algebra wait in busy loops for each other: on small matrices most of the CPU time of a test, and of
+# the processes that it starts.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 gc.set_threshold(20_000, 20, 20)  # cycles are looked for seldom: a fifteenth of the time of all tests
 
 settings.register_profile("rocking", derandomize=True, deadline=None, max_examples=40, database=None)

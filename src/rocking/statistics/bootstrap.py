@@ -222,7 +222,12 @@ class CapacitySample:
         return _below(-(theta[:, 0] + theta[:, 1] * at), -float(self.original.theta[0] @ (1.0, at)))  # Eq. 213
 
     def log_interval(self, variate: float | None, level: float) -> tuple[float, float]:
-        """Return both ends of the interval of `log_quantity`."""
+        """Return both ends of the interval of `log_quantity`; an interval is computed once."""
+        if (variate, level) not in self._intervals:
+            self._intervals[variate, level] = self._log_interval(variate, level)
+        return self._intervals[variate, level]
+
+    def _log_interval(self, variate: float | None, level: float) -> tuple[float, float]:
         (median, log_dispersion), records = self._log_curve, self.variates.shape[1]
         start = log_dispersion if variate is None else median + variate * math.exp(log_dispersion)
         # approximate ends are slightly wider than the ends for known capacities
@@ -251,6 +256,10 @@ class CapacitySample:
         if new:
             self._curves.update(zip([keys[k] for k in new], self._fitted(rows[new]), strict=True))
         return np.array([self._curves[key] for key in keys])[inverse.ravel()]
+
+    @cached_property
+    def _intervals(self) -> dict[tuple[float | None, float], tuple[float, float]]:
+        return {}
 
     @cached_property
     def _curves(self) -> dict[bytes, FloatArray]:
