@@ -26,7 +26,7 @@ Run rows_of(bool single) {
 
 Run kernel_for(bool single, const Choice& c) {
 #if defined(ROCKING_AVX512)
-    // wider registers have no effect on a single history; kernels in rare use are compiled once
+    // wider registers have no effect on a single history; rarely used kernels are compiled once
     if ((single && c.order == 8) || c.linear || c.degree == 7 || c.order == 4) return avx2::kernel_for(single, c);
     if (c.order == 6) return c.vertical ? rows_of<6, 1, true, false>(false) : rows_of<6, 1, false, false>(false);
     return c.vertical ? rows_of<8, 1, true, false>(single) : rows_of<8, 1, false, false>(single);

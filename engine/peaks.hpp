@@ -52,7 +52,7 @@ void Kernel<G, U, N, D, Z, L>::find_peaks() {
             }
             each_fall<N>(slopes, [&](double x) { raise_peak(top, x, value_of<N + 1>(c, x)); });
         }
-        raise_peak(top, top.upto, top.end);  // within rounding, a body may reverse at the end
+        raise_peak(top, top.upto, top.end);  // the end can be a peak: rounding may hide a zero of the velocity there
     }
     peaks_waiting = 0;
 }

@@ -93,7 +93,7 @@ struct Isolation {
             for (int i = 1; i <= degree; ++i) changes += (piece.b[i] < 0.0) != (piece.b[i - 1] < 0.0);
             const bool narrow = depth + 2 > 64 || piece.high - piece.low < 1e-14;
             if (changes == 0 || (changes == 1 && piece.b[0] < 0.0)) continue;
-            int first = 0;  // if a piece starts on a zero, the sign changes there, or the polynomial rises first
+            int first = 0;  // for a piece that starts at a zero: index of the first nonzero coefficient
             while (piece.b[first] == 0.0) ++first;
             if (narrow || (changes == 1 && piece.b[first] < 0.0)) {
                 if (piece.b[degree] < 0.0 && !(piece.b[0] < 0.0) && piece.low > 0.0) report(piece.low);

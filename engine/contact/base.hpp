@@ -32,7 +32,7 @@ inline void sine_cosine(double x, double& sine, double& cosine) {
 }
 
 struct Base {
-    double inertia, height, lever[3];  // j = I_C / m; h; d of the left foot [1] and of the right one [2]
+    double inertia, height, lever[3];  // j = I_C / m; h; d of the left foot [1] and d of the right foot [2]
     double size, pace, slow, alpha[3];  // R, sqrt(g / R), speed that counts as zero, slenderness angles of both sides
     double width() const { return lever[kRight] - lever[kLeft]; }
 };

@@ -70,7 +70,7 @@ struct Lane {
     int s = 0;  // side in contact: 0 for a positive rotation
     bool resting = false, lifts = false;
     double t = 0.0, y = 0.0, v = 0.0, until = 0.0, tangent[V > 0 ? V : 1][2] = {};
-    // largest y and smallest minimum over alpha; velocity and acceleration before the last impact
+    // largest y and smallest minimum / alpha; velocity and acceleration before the last impact
     double peak = 0.0, trough = INFINITY, before = 0.0, falling = 0.0;
     std::int64_t cycle = 0, stored = 0, earlier_impacts = 0, earlier_rests = 0;  // used by the driver
     double growth[2] = {};

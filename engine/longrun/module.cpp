@@ -80,8 +80,8 @@ static void many(Table bodies, Sines sines, Table starts, Array<double, 2> resul
 }
 
 // Motions over n impacts. starts: time, speed after the impact, side. ends (rows, 13): time, speed, side, event,
-// derivatives of time and then of speed by start time, start speed and parameter (-1: none), peak over alpha, velocity
-// before the last impact, and smallest minimum of y between impacts, over alpha (only with derivatives).
+// derivatives of time and then of speed by start time, start speed and parameter (-1: none), peak / alpha, velocity
+// before the last impact, and smallest minimum of y between impacts, / alpha (only with derivatives).
 static void over_impacts(Table bodies, Sines sines, Table starts, Array<double, 2> ends, Table law, std::int64_t n, int parameter, bool linear, double overturned,
                          double rest, double step_error, int threads, const std::string& isa) {
     const Rows rows = rows_of(bodies, sines, starts, law, parameter, linear, overturned, rest, step_error, ends);

@@ -24,7 +24,7 @@ struct Numbers {
     const std::int64_t* corners;
     const double* vertices;           // x and y
     const double* kept;               // moments by vertex and edge of all bodies, or null
-    const double* positions;          // k of landings of the complete base: list of intervals of all bodies and models
+    const double* positions;          // impulse positions k of landings of the complete base: intervals of all bodies and models
     std::int64_t body_count, vertex_count, position_count;
     int degree;
     // by motion: index of its first time, index of its first acceleration, number of stretches

@@ -49,7 +49,7 @@ with TemporaryDirectory() as home:
 # The regression, and the outcomes of the cabinet at the median. The probabilities add up to one.
 
 line, fit = found.regression, found.fits["overturned"]
-print(f"{line.count} rocked and stayed standing, {int((found.responses.overturned == 1.0).sum())} overturned")
+print(f"{line.count} rocked but did not overturn, {int((found.responses.overturned == 1.0).sum())} overturned")
 print(f"ln(theta/alpha) = {line.intercept:.2f} + {line.slope:.2f} ln(PGV), scatter {line.scatter:.2f}")
 print(f"overturning: median PGV {fit.median:.2f} m/s, dispersion {fit.dispersion:.2f}")
 parts = found.parts(fit.median, 0.3)

@@ -39,7 +39,7 @@ for height in (0.5, 4.0):
         rk.Block(width=0.2 * height, height=height), motions, restitution="ked", analysis="cloud"
     )
     ranked[height] = compare_measures(found, measures, metadata)
-    print(f"height {height} m: {ranked[height].scores[0].rocked} of {len(motions)} rocked and stayed standing")
+    print(f"height {height} m: {ranked[height].scores[0].rocked} of {len(motions)} rocked but did not overturn")
     for score in ranked[height].scores:
         p_values = ", ".join(f"p({name}) {value:.2g}" for name, value in score.sufficiency.items())
         print(f"  {score.im:20s} efficiency {score.efficiency:.2f}, {p_values}")

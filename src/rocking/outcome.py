@@ -25,12 +25,12 @@ class Outcome(Coded):
     """Outcome of a time history, in the order of priority: overturned, flew, rocked and slid, held."""
 
     NO_UPLIFT = "stayed at rest without uplift"
-    ROCKED = "rocked and stayed standing"
+    ROCKED = "rocked but did not overturn"
     OVERTURNED = "overturned"
     FAILED = "no result"
-    SLID = "slid without rocking and stayed standing"
-    ROCKED_AND_SLID = "rocked and slid and stayed standing"
-    FLEW = "left the ground with both feet and stayed standing"
+    SLID = "slid without rocking or overturning"
+    ROCKED_AND_SLID = "rocked and slid but did not overturn"
+    FLEW = "left the ground with both feet but did not overturn"
     HELD = "rocked and stays tilted, held by friction"
 
 

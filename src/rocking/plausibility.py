@@ -37,7 +37,7 @@ LARGEST_PGV, LARGEST_PGD = 5.0, 15.0
 END_VELOCITY = 0.1, 0.25
 """Limits of the ground velocity at the end of a record [m/s], and as a fraction of the largest velocity [-]."""
 
-GRAVITIES = 1.6, 25.0  # limits [m/s2]: Moon 1.62, Jupiter 24.8
+GRAVITIES = 1.6, 25.0  # limits [m/s2]; the Moon has 1.62 m/s2, Jupiter 24.8 m/s2
 
 FRICTIONS = 10.0, 100.0
 """Limits of an implausible coefficient of friction [-]: no surface reaches 10; from 100, feet never slide."""

@@ -231,7 +231,7 @@ class Serial(Executor):
 
     A second thread computes the next chunk while a chunk is packed, written, recorded and reported. The second thread
     calls `Histories.run`, one call at a time, possibly during the progress function. At most two chunks and one file
-    are in memory. The thread ends with the run.
+    are in memory. The thread ends at the end of the run.
 
     Parameters
     ----------

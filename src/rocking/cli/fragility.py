@@ -91,12 +91,12 @@ def fragility(
     threads: options.Threads = None,
     name: Annotated[
         str | None,
-        typer.Option(help="Name of the body in the files. [default: its kind]", rich_help_panel=options.OUTPUT),
+        typer.Option(help="Name of the body in the files. [default: kind of the body]", rich_help_panel=options.OUTPUT),
     ] = None,
     crossing_curves: Annotated[
         str,
         typer.Option(
-            help="Curves that cross: keep-uplift, common-dispersion or refuse.",
+            help="Treatment of crossing curves: keep-uplift, common-dispersion or refuse.",
             rich_help_panel=options.OUTPUT,
         ),
     ] = ExportTable.model_fields["crossing_curves"].default,

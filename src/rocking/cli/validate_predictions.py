@@ -31,8 +31,8 @@ def validate_predictions(
     folder: Annotated[
         Path,
         typer.Argument(
-            help="Folder with a body file, records (or one .npz array file) and a .csv table of outcomes: motion (or "
-            "x, y, z), scale, earthquake, overturned, and if known rocked and slid; one row per trial."
+            help="Folder with a body file, records (or one .npz array file) and a .csv table with one row per trial. "
+            "Columns: motion (or x, y, z), scale, earthquake, overturned, and if known rocked and slid."
         ),
     ],
     restitution: options.MeasuredRestitution = None,

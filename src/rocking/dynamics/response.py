@@ -275,10 +275,10 @@ class Response(ResponseBase):
             return str(run.outcome.value)
         ratio = self.peak_rotation / self.parameters.side(run.peak_rotation).slenderness_angle
         return Message(
-            "rocked and stayed standing: largest rotation {rotation:.4g} degrees, {ratio:.3g} of the slenderness "
+            "rocked but did not overturn: largest rotation {rotation:.4g} degrees, {ratio:.3g} of the slenderness "
             "angle, {count} impact",
             {"rotation": np.degrees(self.peak_rotation), "ratio": ratio, "count": int(run.impacts)},
-            "rocked and stayed standing: largest rotation {rotation:.4g} degrees, {ratio:.3g} of the slenderness "
+            "rocked but did not overturn: largest rotation {rotation:.4g} degrees, {ratio:.3g} of the slenderness "
             "angle, {count} impacts",
         )
 
@@ -357,7 +357,7 @@ class Response(ResponseBase):
         return float(np.nanmax(np.abs(twin.rotation[::2] - first.rotation)))  # Eq. 47
 
     def tangent(self) -> "Tangent":
-        """Return the derivatives of the states by the start and by parameters, and the growth of small differences.
+        """Return the derivatives with respect to initial state and parameters, and the growth of small differences.
 
         Returns
         -------
@@ -410,7 +410,7 @@ class Response(ResponseBase):
         return np.asarray((c * x[..., None] ** np.arange(6)).sum(axis=-1))
 
     def answer(self, friction: float = DEFAULT_FRICTION) -> Answer:
-        """Return the results of the response.
+        """Return outcome, peaks, impacts and friction demand, with units and warnings.
 
         Parameters
         ----------
@@ -435,7 +435,7 @@ class Response(ResponseBase):
         }  # fmt: skip
 
     def outcome_answer(self) -> Answer:
-        """Return the results of the response for a comparison.
+        """Return coefficients, outcome and peaks, for a comparison of models.
 
         Returns
         -------

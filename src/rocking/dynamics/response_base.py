@@ -137,7 +137,7 @@ class ResponseBase(Exported):
         """Inputs and provenance as plain values, without software, engine, outcome and settings."""
 
     def answer(self) -> Answer:
-        """Return the results of the response.
+        """Return outcome, peaks and energy, with units.
 
         Returns
         -------

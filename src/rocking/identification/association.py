@@ -196,7 +196,7 @@ def fit_times(measurement: ImpactTimes, prior: Knowledge) -> tuple[Track, Poster
     track, frequency = max(tracks, key=lambda pair: pair[0].score)
     fit, observer = _fitted(track, measurement.times, prior, noise, frequency)
     while fit.no_scatter < 0.5 and track.clicks.size > _FEWEST:
-        # an apparent scatter of r may come from a bounce in place of a missed impact
+        # a bounce that is used as an impact can cause an apparent scatter of r
         sizes = np.abs(fit.standardized_residuals(observer))[1:]  # the first time is kept for the foot
         if sizes.max() < _LARGEST_RESIDUAL:
             break

@@ -339,7 +339,7 @@ def _stepped(
     again = np.flatnonzero((scatter > 0.0) | (straight[0] > value))
     bent, has_draws = tried[again], scatter[again] > 0.0
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        # times are much more accurate than speeds, so the step is linear in u, or in the times
+        # the curved step is linear in the impact times, because times are much more accurate than speeds
         goal = (times + (time_slopes @ step)[..., 0])[again][has_draws]
         bent[has_draws] = model.unknowns_at_times(bent[has_draws], scatter[again][has_draws], goal)
     # without random numbers, a second step has the slopes of the first step

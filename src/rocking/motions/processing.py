@@ -157,7 +157,7 @@ def resampled(motion: GroundMotion, time_step: float) -> GroundMotion:
 
     A finer step of any ratio interpolates linearly between the samples, so that every new sample is exact. If the ratio
     is a whole number, simulations do not change, but the Arias intensity decreases to that of the straight lines. A
-    coarser step must be a whole multiple of the time step of the motion. For a coarser step, a linear-phase low pass
+    coarser step must be an integer multiple of the time step of the motion. For a coarser step, a linear-phase low pass
     (Hamming window, 10 taps per multiple on each side, no shift) first removes the frequencies above the new Nyquist
     frequency.
 
@@ -176,7 +176,7 @@ def resampled(motion: GroundMotion, time_step: float) -> GroundMotion:
     Raises
     ------
     InvalidValueError
-        If the time step is coarser and not a whole multiple, or leaves fewer than two or too many samples.
+        If the time step is coarser and not an integer multiple, or leaves fewer than two or too many samples.
 
     Examples
     --------
@@ -205,7 +205,7 @@ def resampled(motion: GroundMotion, time_step: float) -> GroundMotion:
     factor = round(ratio)
     if abs(ratio - factor) > ROUNDING * factor:
         raise InvalidValueError(
-            "{parameter} above {step:g} s must be a whole multiple of {step:g} s, got {value} s, {ratio:g} times "
+            "{parameter} above {step:g} s must be an integer multiple of {step:g} s, got {value} s, {ratio:g} times "
             "{step:g} s",
             parameter="time_step", value=new, step=motion.time_step, ratio=ratio,
         )  # fmt: skip

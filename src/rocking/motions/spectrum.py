@@ -74,8 +74,8 @@ class ResponseSpectrum:
 def response_spectrum(motion: GroundMotion, periods: ArrayLike, damping: float = 0.05) -> ResponseSpectrum:
     """Return the response spectrum of a motion.
 
-    The recurrence is exact for straight lines between the samples (Nigam & Jennings 1969, DOI 10.1785/BSSA0590020909).
-    It is used in complex form. Only the peaks are approximate: they are the extremes of cubics through values and
+    The recurrence is exact for straight lines between the samples (Nigam & Jennings 1969, DOI 10.1785/BSSA0590020909),
+    and uses complex numbers. Only the peaks are approximate: they are the extremes of cubics through values and
     slopes at 36 or more points per period. The error of the peaks is below 0.01 %, even for periods below 2 time steps.
     Half a period of free vibration after the last sample is included.
 

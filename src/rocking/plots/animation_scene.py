@@ -46,7 +46,7 @@ class DrawnShape:
         points = np.empty((0, 3))
         if isinstance(solid, Section):
             densest = max(region.density for region in solid.regions)
-            # the section of a block has equal feet, but another frame
+            # the section of a block has its own origin, so the middle of its feet is computed again
             shift = np.array([0.5 * sum(solid.local_feet), 0.0])
             regions = [(item.density / densest, [ring - shift for ring in item.rings]) for item in solid.regions]
         elif isinstance(body, MassPoints):

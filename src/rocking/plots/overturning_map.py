@@ -62,7 +62,7 @@ def overturning_map_picture(
     boundary : sequence of Polyline
         Result of `boundary` along the same axes. It is plotted over the map.
     contours : sequence of float
-        Peak rotations over alpha of the contour lines [-].
+        Peak rotations / alpha of the contour lines [-].
 
     Returns
     -------

@@ -206,7 +206,7 @@ def _ratios(sensitivity: Sensitivity, state: str) -> str:
 def difference_map_picture(sensitivity: Sensitivity, choice: str | None = None) -> "Figure":
     r"""Draw the maps of the baseline and of another restitution, and their difference.
 
-    In the map of differences, the colour shows the change of the peak rotation over alpha, if the body does not
+    In the map of differences, the colour shows the change of the peak rotation / alpha, if the body does not
     overturn with both. Two more colours show changes of the outcome.
 
     Parameters

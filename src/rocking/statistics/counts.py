@@ -251,7 +251,7 @@ def check_spread(levels: FloatArray) -> None:
 def pooled(levels: FloatArray, good: BoolArray, reached: Sequence[BoolArray], cluster: IntArray) -> list[Counts]:
     """Return the counts of several states of common histories. They are equal to `count_outcomes` of every state."""
     # motions (first axis) with equal levels and outcomes become one row with a weight, so that ten million histories
-    # need little memory; if a cluster has more than one history, rows are made by cluster
+    # need little memory; a cluster with more than one history has its own row
     size = np.bincount(cluster, good.reshape(cluster.size, -1).sum(axis=1))
     if good.any() and size.max() <= 1.0:  # independent trials: all states have common levels and trials
         distinct, index = np.unique(levels[good], return_inverse=True)

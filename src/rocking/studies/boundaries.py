@@ -57,11 +57,11 @@ def boundary(  # noqa: PLR0913 - users set every one of them
 ) -> list[Polyline]:
     """Return the boundary of overturning in the plane of two parameters.
 
-    The boundary crosses every edge of the grid with different ends once, at a point from bisection, and continues from
-    cell to cell. Two crossings of one edge are not detected. Therefore, regions narrower than a cell may be missed, and
-    a narrow strip without overturning between two modes may appear in pieces. In a cell with opposite overturned
-    corners (a saddle), the centre is computed. If the centre overturns, the overturned corners are connected, otherwise
-    they are separated.
+    If the two ends of an edge of the grid have different outcomes, the boundary crosses this edge at one point, which
+    bisection determines. Two crossings of one edge are not detected. Therefore, regions narrower than a cell may be
+    missed, and a narrow strip without overturning between two modes may appear in pieces. In a cell with opposite
+    overturned corners (a saddle), the centre is computed. If the centre overturns, the overturned corners are
+    connected, otherwise they are separated.
 
     Parameters
     ----------

@@ -124,11 +124,11 @@ _MOST_SAMPLES = 1_000_000
 
 @dataclass(frozen=True)
 class Effort:
-    """Density of the search."""
+    """Samples, bisections and tolerance of a search."""
 
     samples: int = 400  # number of first samples, in equal ratios [-]
     bisections: int = 4  # number of bisections of suspicious intervals, from 0 to 12 [-]
-    tolerance: float = 1e-12  # width of the last brackets over the acceleration [-]
+    tolerance: float = 1e-12  # width of the last brackets / acceleration [-]
 
     def __post_init__(self) -> None:
         for name, low, high in (("samples", 2, _MOST_SAMPLES), ("bisections", 0, 12)):

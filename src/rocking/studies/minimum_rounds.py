@@ -49,7 +49,7 @@ class MinimumSearch:
     """Rounds of a search for crossings."""
 
     cases: Cases  # every motion with every restitution and body; the body changes fastest
-    effort: Effort  # density of the search
+    effort: Effort  # samples, bisections and tolerance of the search
     motions: MotionList
     shape: tuple[int, int, int]  # numbers of motions, restitutions and bodies
     law: ImpactLaw  # law of the coefficient per impact

@@ -131,7 +131,7 @@ def test_rocked_sentence(name: str) -> None:
     response = let_go(name)
     count = response.impacts.size
     share = 0.15 / ALPHA
-    expected = f"rocked and stayed standing: largest rotation 8.594 degrees, {share:.3g} of the slenderness angle, "
+    expected = f"rocked but did not overturn: largest rotation 8.594 degrees, {share:.3g} of the slenderness angle, "
     assert response.summary == f"{expected}{count} impacts"
     assert repr(response).startswith(f"<Response: {expected}")
     assert f"[{name} (Taylor" in repr(response)
@@ -220,7 +220,7 @@ def test_a_motion_that_was_cut_is_told(name: str) -> None:
     """A motion followed for 2 s only is said to be cut there, whatever came of it; a whole one is not."""
     record = rk.GroundMotion(np.concatenate([np.zeros(61), np.full(40, 12.0)]), 0.05)
     told = "; the motion was cut at 2 s, with ground at rest afterwards"
-    for rotation, start in ((0.0, "stayed at rest"), (0.15, "rocked and stayed standing")):
+    for rotation, start in ((0.0, "stayed at rest"), (0.15, "rocked but did not overturn")):
         response = rk.simulate(BLOCK, record, R, engine=name, rotation=rotation, duration=2.0)
         assert response.summary.startswith(start)
         assert response.summary.removesuffix(f"; {response.unfinished}").endswith(told)

@@ -198,12 +198,12 @@ def test_coarser_is_filtered() -> None:
 
 
 def test_steps_typed_to_a_few_digits() -> None:
-    """A step is a whole multiple if it is one to a part in a million: 2 and 5 times a thirtieth in seven decimals."""
+    """A step is an integer multiple if it is one to a part in a million: 2 and 5 times a thirtieth in seven decimals."""
     motion = GroundMotion(np.sin(0.1 * np.arange(200)), 1.0 / 30.0)
     for step, samples in ((0.0666667, 100), (0.1666667, 40)):
         assert len(resampled(motion, step)) == samples
     for step in (0.066667, 0.1667):
-        with pytest.raises(InvalidValueError, match="whole multiple"):
+        with pytest.raises(InvalidValueError, match="integer multiple"):
             resampled(motion, step)
 
 
@@ -268,7 +268,7 @@ REFUSED: list[tuple[str, Any]] = [
     *(("high must be", lambda x=x: bandpassed(BOTH, *x)) for x in ((5.0, 5.0), (1.0, 50.0))),
     ("low must be", lambda: bandpassed(BOTH, 0.0, 10.0)),
     *(("order must be a whole number", lambda x=x: bandpassed(BOTH, 1.0, 10.0, x)) for x in (0, 2.5)),
-    ("above 0.1 s must be a whole multiple of 0.1 s, got 0.15 s, 1.5 times 0.1 s", lambda: resampled(MOTION, 0.15)),
+    ("above 0.1 s must be an integer multiple of 0.1 s, got 0.15 s, 1.5 times 0.1 s", lambda: resampled(MOTION, 0.15)),
     ("must be at most 0.3 s, so that 2 samples remain, got 0.4 s", lambda: resampled(MOTION, 0.4)),
     ("at most 1e\\+08 samples, got 2.72727e\\+08; check the unit", lambda: resampled(MOTION, 1.1e-9)),
     *(("in seconds", lambda x=x: resampled(MOTION, x)) for x in (1e-10, 2000.0)),

@@ -218,7 +218,7 @@ PlaceData: Any = shape(
 )
 AllowedData: Any = shape(
     "AllowedData",
-    "The allowed values of a parameter; low and high are null where a range has no end.",
+    "The allowed values of a parameter; low and high are null for an open range.",
     sentence=str,
     low=(float | None, Field(None, description="lower limit, in `unit` of the refusal")),
     high=(float | None, Field(None, description="upper limit, in `unit` of the refusal")),
@@ -243,7 +243,7 @@ ErrorDetail: Any = shape("ErrorDetail", "An error.", Refusal, kind=Kind, needs=(
 
 
 class ErrorAnswer(BaseModel):
-    """An error: kind and sentence."""
+    """An error: kind and message."""
 
     model_config = ConfigDict(
         extra="forbid",

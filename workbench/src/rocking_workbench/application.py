@@ -50,12 +50,12 @@ _WORDS = {404: "not found", 405: "the method is not allowed here"}
 STATIC = Path(__file__).parent / "static"
 _MANUALS = (Path(__file__).parent / "manual", Path(__file__).parents[3] / "build" / "manual")  # packaged or built
 _ABOUT = """\
-The same API serves the pages of `rocking serve`, scripts and MATLAB. Numbers are SI, float64, with every digit.
+The same API serves the pages of `rocking serve`, scripts and MATLAB. Numbers are float64 in SI units, with all digits.
 
-A script sends with every request `Authorization: Bearer KEY`, where KEY stands in the file `api-key` of the data
-folder and is new at every start, and with every POST or DELETE also `Origin: {origin}`, the server's
-own address. Errors are `{{"error": {{"kind", "message", ...}}}}`: `message` is a sentence, `parameter`, `text` with its
-`facts`, `hint`, `places` and `more` are what it is made of."""
+Every request of a script needs the header `Authorization: Bearer KEY`. The file `api-key` in the data folder contains
+KEY. Each start of the server creates a new KEY. Every POST or DELETE also needs `Origin: {origin}`, the address of the
+server. Errors are `{{"error": {{"kind", "message", ...}}}}`. `message` is a sentence. Its components are `parameter`,
+`text` with its `facts`, `hint`, `places` and `more`."""
 
 
 def refused_input(error: ValidationError | RequestValidationError) -> RockingError:

@@ -444,7 +444,7 @@ class BodyAssessment:
         return Message.joined([
             sentence,
             Message(
-                "All motions are equally likely; the largest is {probability}, under {motion}.",
+                "All motions are equally likely. The largest probability is {probability}, under {motion}.",
                 {"probability": largest, "motion": name},
             ),
         ])  # fmt: skip

@@ -58,7 +58,7 @@ class HullBody:
             )  # fmt: skip
         moments = solid.local_moments
         points = solid.equilibria().hull_vertices - solid.origin
-        mass_distribution = solid if solid.known is None else None  # stated moments have no distribution of mass
+        mass_distribution = solid if solid.known is None else None  # known moments define no mass distribution
         return cls(points, moments.mass, moments.centre, moments.inertia, mass_distribution, solid.local_base)
 
     def moved(self, shift: FloatArray) -> "HullBody":

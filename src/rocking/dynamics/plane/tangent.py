@@ -1,4 +1,4 @@
-"""Tangent dynamics of a plane body: derivatives of its states by the start and by parameters, through every impact."""
+"""Derivatives of the states of a plane body with respect to the initial state and to parameters, through impacts."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -20,18 +20,19 @@ PARAMETERS = ("amplitude", "frequency", "restitution", "slenderness")
 
 @dataclass(frozen=True, eq=False)
 class Tangent:
-    """Derivatives of the states of a plane response by its start and by parameters.
+    """Derivatives of the states of a plane response with respect to the initial state and to parameters.
 
-    A body that comes to rest loses all differences of its start: derivatives are zero after a rest.
+    If the body comes to rest, small differences of the initial state vanish: the derivatives are zero after a rest.
 
     Parameters
     ----------
     time, rotation : ndarray
         Times [s] and rotations [rad] of the samples, shape (samples,).
     by_start : ndarray
-        Derivatives of rotation [rad] and angular velocity [rad/s] by those at the start, shape (samples, 2, 2).
+        Derivatives of rotation [rad] and angular velocity [rad/s] with respect to their initial values, shape
+        (samples, 2, 2).
     by_parameter : dict of str to ndarray
-        Derivatives of rotation and angular velocity by each parameter, shape (samples, 2): ``amplitude`` and
+        Derivatives with respect to each parameter, shape (samples, 2): ``amplitude`` and
         ``frequency``, factors on the ground acceleration and on all its frequencies [-]; ``restitution``, both
         coefficients [-]; ``slenderness``, both slenderness angles at constant frequency parameters [rad].
     determinants : ndarray
@@ -127,7 +128,7 @@ def _acceleration(response: "Response", sign: int, push: float, lift: float) -> 
 
 
 def _slope(law: ImpactLaw, speed: float, stream: int, impact: int) -> float:
-    """Return the derivative of the factor of a law by the speed [s/rad]."""
+    """Return the derivative of the factor of a law with respect to the speed [s/rad]."""
     if law.kind == 1:
         k = int(np.searchsorted(law.at, speed, side="right"))
         inside = 0 < k < law.at.size
@@ -139,7 +140,7 @@ def _slope(law: ImpactLaw, speed: float, stream: int, impact: int) -> float:
 
 
 def _flows(response: "Response") -> FloatArray:
-    """Return derivatives of the state at the end of each interval by that at its start, and by the parameters."""
+    """Return derivatives of the final state of each interval with respect to its initial state and parameters."""
     # shape (intervals, 2, 2 + parameters); zero at rest. Series in u = alpha - |theta| over 0 <= x <= 1
     output, segments, settings = response.dense_output, response.segments, response.settings
     side, length = output.side, output.length

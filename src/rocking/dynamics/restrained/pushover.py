@@ -60,7 +60,7 @@ class Pushover:
         )
 
     def answer(self) -> Answer:
-        """Return the results of the pushover.
+        """Return the curves of the pushover, and forces and energy of the restraints, with units.
 
         Returns
         -------

@@ -472,7 +472,7 @@ class RestrainedReference:
             return self._end(Outcome.HELD)
         if not self._may_overturn():
             return self._end(Outcome.ROCKED if self.out.uplifts or self.out.impacts else Outcome.NO_UPLIFT)
-        # ground at rest is appended to determine the outcome
+        # zero samples after the ground motion, to determine the outcome
         still = np.zeros((math.ceil(_AFTER / (self.equation.p * self.push.step)), self.push.horizontal.shape[1]))
         rows = (np.vstack([self.push.horizontal, still]), np.vstack([self.push.vertical, still]))
         self.push = Push(self.push.step, *rows)

@@ -204,7 +204,7 @@ class RestrainedResponse(ResponseBase):
         })  # fmt: skip
 
     def answer(self) -> Answer:
-        """Return the results of the response.
+        """Return outcome, peaks, and forces and energy of the restraints, with units and warnings.
 
         Returns
         -------
@@ -258,10 +258,10 @@ class RestrainedResponse(ResponseBase):
                 {**facts, "residual": np.degrees(self.residual_rotation)},
             )
         return Message(
-            "rocked and stayed standing: largest rotation {rotation:.4g} degrees, {ratio:.3g} of the slenderness "
+            "rocked but did not overturn: largest rotation {rotation:.4g} degrees, {ratio:.3g} of the slenderness "
             "angle, {count} impact",
             {**facts, "count": int(run.impacts)},
-            "rocked and stayed standing: largest rotation {rotation:.4g} degrees, {ratio:.3g} of the slenderness "
+            "rocked but did not overturn: largest rotation {rotation:.4g} degrees, {ratio:.3g} of the slenderness "
             "angle, {count} impacts",
         )
 

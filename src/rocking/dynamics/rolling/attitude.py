@@ -152,7 +152,7 @@ class SpatialStart:
 
     @property
     def numbers(self) -> list[float]:
-        """All numbers of the start, in the order of the parameters."""
+        """All values of the initial state, in the order of the parameters."""
         spin, velocity = (np.ravel(vector).tolist() for vector in (self.angular_velocity, self.velocity))
         return [self.tilt, self.azimuth, self.yaw, *spin, self.height, *velocity]
 

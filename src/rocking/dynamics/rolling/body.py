@@ -185,9 +185,7 @@ class SpatialBody:
             origin[:2] = getattr(base, "centre", (0.0, 0.0))
         shape = next((getattr(base, n) for n in ("radius", "vertices") if getattr(base, n, None) is not None), base)
         spatial = cls(values["mass"], np.asarray(values["centre"]) - origin, values["inertia"], shape)
-        spread = (
-            isinstance(body, Solid) and body.known is None
-        )  # a body with stated moments has no distribution of mass
+        spread = isinstance(body, Solid) and body.known is None  # known moments define no mass distribution
         return spatial._with_matter(Matter(partial(_same, body), origin)) if spread else spatial
 
     def _with_matter(self, matter: Matter) -> "SpatialBody":

@@ -212,7 +212,7 @@ class SpatialResponse(ResponseBase):
                 f"overturned towards {math.degrees(self.overturning_direction):.4g} degrees{contact} after {impacts}, "
                 f"past the point of no return at {self.overturning_time:.4g} s"
             )
-        sentence = f"rocked and stayed standing: largest tilt {math.degrees(self.peak_tilt):.4g} degrees, {impacts}"
+        sentence = f"rocked but did not overturn: largest tilt {math.degrees(self.peak_tilt):.4g} degrees, {impacts}"
         if tensile := int((self.impacts["pull"] > 1e-9 * np.abs(self.impacts["impulse"])).sum()):
             sentence += f"; at {tensile} of them a corner would have slipped or bounced rather than stuck"
         if self.cut_impacts:

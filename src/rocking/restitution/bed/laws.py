@@ -58,8 +58,8 @@ class ContactLaw(ABC):
 def force(law: LawNumbers, depth: FloatArray, speed: FloatArray, deepest: FloatArray) -> FloatArray:
     """Return the force of one copy of a law [N]."""
     # Kelvin-Voigt: ``F = max(0, k d + c d')``. Hunt-Crossley: ``F = k d^n max(0, 1 + chi d')``. Plastic unloading: ``F
-    # = max(0, min(k d, k / e^2 (d - d_p)))`` with the set ``d_p = (1 - e^2) d_max``. All are zero for d <= 0. See
-    # docs/theory/contact_bed.md, and Walton and Braun (1986) for the unloading branch.
+    # = max(0, min(k d, k / e^2 (d - d_p)))`` with the set ``d_p = (1 - e^2) d_max``. The forces are zero for d <= 0.
+    # See docs/theory/contact_bed.md, and Walton and Braun (1986) for the unloading branch.
     # depth: depths d of the points [m]
     # speed: rates d' of the depths, positive during loading [m/s]
     # deepest: largest depths up to now, for plastic unloading [m]

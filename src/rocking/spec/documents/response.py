@@ -35,7 +35,7 @@ class ResponseTable(JobTable):
     assumed_friction: float = Field(
         gt=0.0,
         default_factory=lambda: DEFAULT_FRICTION,
-        description="without friction: coefficient of friction for the sliding check, default 0.5 [-]",
+        description="coefficient of friction for the sliding check of simulations without sliding, default 0.5 [-]",
     )
 
     @field_validator("initial_rotation")

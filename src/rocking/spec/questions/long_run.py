@@ -99,9 +99,9 @@ class BasinsTable(LongRunTable):
     frequency: Positive = key("circular frequency of the ground motion over p [-]", 3.0)
     phases: int = key("number of phases of the ground motion at the impact", 100, ge=1, le=20_000)
     speeds: int = key("number of speeds after the impact; 0 for a start at rest", 100, ge=0, le=20_000)
-    highest: Positive = key("upper end of the speeds over alpha p [-]", 2.0)
+    highest: Positive = key("upper end of the speeds / (alpha p) [-]", 2.0)
     impacts: int = key("number of impacts", 120, ge=1, le=1_000_000)
-    small: float = key("speed over alpha p below which a motion counts as small [-]", 0.02, ge=0.0, le=1.0)
+    small: float = key("speed / (alpha p) below which a motion counts as small [-]", 0.02, ge=0.0, le=1.0)
     check: bool = key("second computation with another step error", True)
 
     def task(self, seed: int) -> "Task":

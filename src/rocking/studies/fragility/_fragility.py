@@ -57,12 +57,12 @@ def fragility(  # noqa: PLR0913 - users set every one of them
         A name from `rocking.motions.intensity.measures`, or ``sa(period)``. Levels need a measure that increases with
         the scale factor.
     limit_states : sequence of float or str
-        Limit states as rotations over alpha [-]. Rocking and overturning are added, unless ``"rocking"`` or
+        Limit states as rotations / alpha [-]. Rocking and overturning are added, unless ``"rocking"`` or
         ``"overturning"`` is in the sequence.
     scale : float, optional
         Scale factor of all motions of a cloud [-]. The default is 1.
     min_rotation : float, optional
-        Smallest rotation over alpha with which a history of a cloud is part of the regression [-]. The default is 0.01.
+        Smallest rotation / alpha with which a history of a cloud is part of the regression [-]. The default is 0.01.
     tolerance : float, optional
         Relative width at which the search of an incremental analysis ends [-]. 0 means the last bit; the default is
         1e-8.

@@ -18,22 +18,22 @@ from rocking.studies.fragility.subject import FragilityAnalysis, Responses
 if TYPE_CHECKING:
     import xarray as xr
 
-MIN_ROTATION = 0.01  # default limit of the rotation over alpha [-]; histories with smaller rotations are barely lifted
+MIN_ROTATION = 0.01  # default limit of the rotation / alpha [-]; histories with smaller rotations are barely lifted
 
 DEFINITION = (
-    "cloud: overturning is fitted to the outcome of each motion at its own level; among histories that rocked, not "
-    "barely, and stayed standing, ln(theta/alpha) is a straight line in the ln of the measure; a rotation is exceeded "
-    "by what overturned, and by what rocked beyond it"
+    "cloud: overturning is fitted to the outcome of each motion at its own level. For histories without overturning "
+    "and with rotations of at least min_rotation, ln(theta/alpha) is a linear function of the logarithm of the "
+    "measure. A rotation is exceeded if the body overturns, or if its peak rotation is larger"
 )
 
 
 def checked_min_rotation(rotation: float) -> float:
-    """Return the checked limit of the rotation over alpha [-] for barely lifted histories."""
-    return checks.within("min_rotation", rotation, 0.0, 1.0, open_high=True, hint="a rotation over alpha")
+    """Return the checked limit of the rotation / alpha [-] for barely lifted histories."""
+    return checks.within("min_rotation", rotation, 0.0, 1.0, open_high=True, hint="a rotation / alpha")
 
 
 def clearly_lifted(responses: Responses, min_rotation: float) -> BoolArray:
-    """Return True for histories without overturning whose rotation over alpha reaches `min_rotation` [-]."""
+    """Return True for histories without overturning whose rotation / alpha reaches `min_rotation` [-]."""
     return np.asarray(responses.rocked & (responses.rotation >= min_rotation) & (responses.rotation > 0.0))
 
 
@@ -42,7 +42,7 @@ class CloudAnalysis(FragilityAnalysis):
     """Result of a cloud analysis. States and rotations have one entry per motion."""
 
     motion_levels: FloatArray  # measures of the scaled motions [unit of the measure]
-    min_rotation: float = MIN_ROTATION  # smallest rotation over alpha in the regression [-]
+    min_rotation: float = MIN_ROTATION  # smallest rotation / alpha in the regression [-]
 
     kind = "cloud"
     definition = DEFINITION
@@ -115,13 +115,13 @@ class CloudAnalysis(FragilityAnalysis):
         return np.asarray(self.fit_of("rocking").probability(levels), dtype=np.float64)
 
     def probability(self, level: Any, rotation: float) -> FloatArray:
-        """Return the probability at levels that the rotation over alpha exceeds a value >= `min_rotation` [-]."""
+        """Return the probability at levels that the rotation / alpha exceeds a value >= `min_rotation` [-]."""
         # P(overturned) + P(rocked, not overturned) P(rotation exceeded | rocked, not overturned)
         terms = self.parts(level, rotation)
         return terms["overturned"] + terms["exceeded"]  # Eq. 221
 
     def parts(self, level: Any, rotation: float) -> dict[str, FloatArray]:
-        """Return the terms of the total probability at levels, for a rotation over alpha [-]. They add up to 1.
+        """Return the terms of the total probability at levels, for a rotation / alpha [-]. They add up to 1.
 
         The terms are ``no rocking``, ``below`` (rocked up to the rotation), ``exceeded`` (rocked beyond the rotation
         without overturning) and ``overturned``. A barely lifted body does not exceed `min_rotation`.

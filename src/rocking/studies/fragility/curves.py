@@ -347,7 +347,8 @@ def _keeping_uplift(model: FragilityModel, excess: "Excess") -> FragilityModel:
     if crosses(joined) is None:
         reasons.append(Message("The curve of {state} is not changed: {uplift}.", facts))
     else:
-        reasons.append(Message("The state {state} is omitted, because its curve would still cross: {uplift}.", facts))
+        omitted = "The limit state {state} is omitted, because its curve would cross another curve: {uplift}."
+        reasons.append(Message(omitted, facts))
         joined = replace(nested_model, without={**model.without, ROCKING: reasons[-1]})
     return replace(joined, adjusted=Message.joined(reasons))
 
@@ -398,8 +399,8 @@ def with_common_dispersion(model: FragilityModel) -> FragilityModel:
         if curve.state == ROCKING and model.uplift_threshold is not None:
             probability_at_uplift = float(curves[-1].probability(model.uplift_threshold))
             at_uplift = {"state": ROCKING, "share": probability_at_uplift, "uplift": uplift_words(model)}
-            gives = Message("The curve of {state} gives {share:.2g} at the level of uplift: {uplift}.", at_uplift)
-            adjusted = Message.joined([adjusted, gives])
+            gives = "The curve of {state} gives the probability {share:.2g} at the level of uplift: {uplift}."
+            adjusted = Message.joined([adjusted, Message(gives, at_uplift)])
     return replace(model, curves=tuple(curves), adjusted=adjusted)
 
 
@@ -407,7 +408,7 @@ def variables_of(curves: Sequence[FragilityCurve], levels: int, unit: str) -> di
     """Return intervals, goodness of fit and bootstrap of curves over state. Missing values are NaN."""
 
     def intervals(ends: Sequence[Ends | None], units: str, meaning: str) -> tuple[Any, np.ndarray, dict[str, str]]:
-        long_name = f"95 % interval{meaning}, missing where it is open, or there is none"
+        long_name = f"95 % interval{meaning}; missing for an open end or a missing interval"
         return (
             ("state", "end"),
             np.array([ends_of(interval) for interval in ends]),

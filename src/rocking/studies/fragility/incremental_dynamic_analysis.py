@@ -219,7 +219,7 @@ class IncrementalDynamicAnalysis(MultipleStripeAnalysis):
 
     @property
     def curves(self) -> FloatArray:
-        """Rotation over alpha [-], shape (motions, levels); infinite for overturned bodies."""
+        """Rotation / alpha [-], shape (motions, levels); infinite for overturned bodies."""
         return self.responses.rotation
 
     @property

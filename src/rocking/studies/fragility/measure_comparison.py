@@ -56,7 +56,7 @@ class MeasureComparison:
     scores: tuple[MeasureScore, ...]  # one score per measure
     # measures without a rank, because their values are equal for all motions, with the reason
     left_out: Mapping[str, str]
-    min_rotation: float = MIN_ROTATION  # limit of the rotation over alpha for barely lifted histories [-]
+    min_rotation: float = MIN_ROTATION  # limit of the rotation / alpha for barely lifted histories [-]
 
     @property
     def best(self) -> str:
@@ -100,7 +100,7 @@ def compare_measures(
     metadata : mapping of str to array_like, optional
         Quantities of the motions, one number per motion, such as magnitude, ln of the distance or duration.
     min_rotation : float, optional
-        Smallest rotation over alpha of a history in the regressions [-]. Without a limit, the logarithms of very small
+        Smallest rotation / alpha of a history in the regressions [-]. Without a limit, the logarithms of very small
         rotations would dominate. Default: the value of the analysis.
     progress : callable, optional
         Function called with the number of motions measured since the last call. All motions are measured once per

@@ -37,7 +37,7 @@ class FragilityQuestion:
     limit_states: tuple[LimitState, ...]
     levels: FloatArray  # levels of the stripes, or for a cloud the levels of the motions [unit of the measure]
     histories: Product
-    min_rotation: float  # smallest rotation over alpha of a history in the regression of a cloud [-]
+    min_rotation: float  # smallest rotation / alpha of a history in the regression of a cloud [-]
     tolerance: float  # relative width at which an incremental search ends [-]
 
     @classmethod

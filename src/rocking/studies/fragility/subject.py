@@ -198,14 +198,14 @@ class LimitState:
     """A limit state. A history that reaches a state has reached all lesser states."""
 
     name: str  # ``rocking``, ``rotation > 0.5 alpha`` or ``overturned``
-    level: float  # rotation over alpha that must be exceeded [-]: 0 for rocking, infinite for overturning
+    level: float  # rotation / alpha that must be exceeded [-]: 0 for rocking, infinite for overturning
 
 
 NAMED = {"rocking": LimitState("rocking", 0.0), "overturning": LimitState("overturned", math.inf)}
 
 
 def limit_states_of(levels: Sequence[float | str] = (0.5,)) -> tuple[LimitState, ...]:
-    """Return limit states, the mildest first, from rotations over alpha (increasing) and names.
+    """Return limit states, the mildest first, from rotations / alpha (increasing) and names.
 
     If the sequence contains only numbers, rocking and overturning are added. A sequence with a name (``rocking``,
     ``overturning``) is complete.
@@ -214,7 +214,7 @@ def limit_states_of(levels: Sequence[float | str] = (0.5,)) -> tuple[LimitState,
     names = [level for level in items if isinstance(level, str)] if isinstance(items, list | tuple) else []
     if unknown := [name for name in names if name not in NAMED]:
         raise InvalidValueError(
-            parameter="limit_states", allowed=f"rotations over alpha, {' or '.join(NAMED)}", value=unknown[0]
+            parameter="limit_states", allowed=f"rotations / alpha, {' or '.join(NAMED)}", value=unknown[0]
         )
     if len(set(names)) < len(names):
         raise InvalidValueError(
@@ -232,7 +232,8 @@ def _rotations(levels: Any) -> tuple[LimitState, ...]:
     rotations = np.atleast_1d(np.asarray(levels))
     rotations = checks.positive_array("limit_states", rotations) if rotations.size else np.empty(0)
     if rotations.ndim != 1:
-        raise InvalidValueError(parameter="limit_states", allowed="a row of rotations over alpha", value=levels)
+        allowed = "a one-dimensional array of rotations / alpha"
+        raise InvalidValueError(parameter="limit_states", allowed=allowed, value=levels)
     checks.increasing("limit_states", rotations)
     return tuple(LimitState(f"rotation > {level:.6g} alpha", float(level)) for level in rotations)
 
@@ -301,7 +302,7 @@ class Responses:
 
     def labelled(self, dimensions: Any) -> dict[str, Any]:
         """Return outcome and rotation as variables of a labelled dataset."""
-        meaning = "largest rotation over alpha; infinite if overturned, NaN if the history failed"
+        meaning = "largest rotation / alpha; infinite if overturned, NaN if the history failed"
         variables: dict[str, Any] = {
             "outcome": (dimensions, self.outcome, attributes("outcome")),
             "rotation": (dimensions, self.rotation, {"units": "1", "long_name": meaning}),

@@ -10,14 +10,14 @@ from rocking.conventions import FloatArray
 from rocking.studies.longrun.system import DEFAULTS, NONE, OVERTURNED, HarmonicRocking, Numerics, Periods, over_periods
 
 LONGEST = 64  # periods of a periodic attractor that are recognised
-CLOSURE = 1e-6  # of rotation over alpha and velocity over alpha p
+CLOSURE = 1e-6  # of rotation / alpha and velocity / (alpha p)
 REST, STICKING, PERIODIC, IRREGULAR, LOST, FAILURE = range(6)
 KINDS = ("rest", "sticking", "periodic", "irregular", "overturned", "failed")
 """Kinds of long histories: at rest throughout, with rests in between, periodic, none of these, overturned, failed."""
 
 
 def start_states(system: HarmonicRocking, states: Any) -> FloatArray:
-    """Return time, rotation and velocity of phases [rad] and speeds over alpha p after an impact; at rest where NaN."""
+    """Return time, rotation and velocity of phases [rad] and speeds / (alpha p) after an impact; at rest where NaN."""
     states = np.atleast_2d(states)
     times = (states[:, 0] - system.excitation.phase) / system.excitation.frequency
     starts = np.column_stack([times, np.zeros(len(states)), states[:, 1] * system.alpha * system.p])

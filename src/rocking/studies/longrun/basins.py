@@ -78,7 +78,7 @@ def ends_of(
     system: HarmonicRocking, phase: Any, speed: Any, *, impacts: int = 120, small: float = 0.02,
     numerics: Numerics = DEFAULTS,
 ) -> Any:  # fmt: skip
-    """Return the kinds (index in `KINDS`) of histories from phases and speeds over alpha p after an impact.
+    """Return the kinds (index in `KINDS`) of histories from phases and speeds / (alpha p) after an impact.
 
     A speed of 0 is a start at rest; such a history is small if the body rests in the last of impacts / 2 periods.
     """
@@ -96,7 +96,7 @@ def ends_of(
 
 
 def cells(phases: int, speeds: int, highest: float) -> tuple[FloatArray, FloatArray]:
-    """Return the phases [rad] and speeds over alpha p of the centres of cells; 0 speeds: that of a start at rest."""
+    """Return the phases [rad] and speeds / (alpha p) of the centres of cells; 0 speeds: that of a start at rest."""
     phase = (np.arange(checks.whole("phases", phases, 1)) + 0.5) * 2.0 * math.pi / phases
     speed = (np.arange(checks.whole("speeds", speeds, 0)) + 0.5) * checks.positive("highest", highest) / max(speeds, 1)
     return phase, speed if speeds else np.zeros(1)
@@ -154,7 +154,7 @@ def uncertainty_exponent(
     distances : array_like, optional
         Distances of the neighbours in phase [rad]; 10^-4 to 10^-1.5 by default.
     highest : float, optional
-        Upper end of the speeds over alpha p [-].
+        Upper end of the speeds / (alpha p) [-].
     impacts : int, optional
         Number of impacts that are followed.
     seed : int, optional

@@ -18,7 +18,7 @@ from rocking.studies.longrun.orbits import OrbitNotFoundError, PeriodicOrbit, or
 from rocking.studies.longrun.system import IMPACT, REST_SPEED, HarmonicRocking, ImpactFlights, Parameter, over_impacts
 
 _SHORTEST = 1e-9  # step in phase [rad], speed and parameter
-_CLOSE, _FAR = 1e-6, 1e-2  # rotations over alpha, or speeds over alpha p, at a grazing and near it
+_CLOSE, _FAR = 1e-6, 1e-2  # rotations / alpha, or speeds / (alpha p), at a grazing and near it
 
 
 def _test(jacobian: FloatArray, name: str) -> float:

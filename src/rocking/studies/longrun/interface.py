@@ -35,12 +35,12 @@ def poincare(  # noqa: PLR0913 - every one of them is a question that users ask
         Restitution; a list adds the dimension ``restitution``.
     starts : int or array_like, optional
         Number of initial states: at rest, then random after an impact. Or the phase of the ground motion [rad] and
-        the speed over alpha p of each state after an impact, shape (starts, 2); NaN at rest.
+        the speed / (alpha p) of each state after an impact, shape (starts, 2); NaN at rest.
     cycles : tuple of int, optional
         Number of periods before the section, and of the section.
     at : {"period", "impact"}, optional
-        States at the ends of periods: rotation over alpha, angular velocity over alpha p. Or after the first impacts,
-        8 per period at most: phase of the ground motion [rad], angular velocity over alpha p.
+        States at the ends of periods: rotation / alpha, angular velocity / (alpha p). Or after the first impacts,
+        8 per period at most: phase of the ground motion [rad], angular velocity / (alpha p).
     seed : int, optional
         Random seed of the initial states.
     linear : bool, optional
@@ -190,14 +190,14 @@ def basin(  # noqa: PLR0913 - every one of them is a question that users ask
     amplitudes : array_like, optional
         Amplitudes over that of uplift [-]; that of the ground motion by default. Several show the erosion.
     phases, speeds : int or array_like, optional
-        Number of cells, with states at their centres, or phases of the ground motion [rad] and speeds over alpha p.
+        Number of cells, with states at their centres, or phases of the ground motion [rad] and speeds / (alpha p).
         One phase or one speed is a path through the basin. A speed of 0, also ``speeds=0``, is a start at rest.
     highest : float, optional
-        Upper end of the speeds over alpha p [-].
+        Upper end of the speeds / (alpha p) [-].
     impacts : int, optional
         Number of impacts; histories from rest last half as many periods.
     small : float, optional
-        Speed over alpha p after an impact below which a history ends as small; a history from rest is small if the body
+        Speed / (alpha p) after an impact below which a history ends as small; a history from rest is small if the body
         rests in the last period.
     check : bool, optional
         True repeats the computation with another step error and marks the cells that differ.

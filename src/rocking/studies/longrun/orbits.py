@@ -11,7 +11,7 @@ from rocking.studies.longrun.system import IMPACT, HarmonicRocking, ImpactFlight
 from rocking.studies.longrun.thresholds import slender_conditions, slender_thresholds
 
 ComplexArray = np.ndarray[tuple[int, ...], np.dtype[np.complex128]]
-TOLERANCE = 1e-12  # of phase [rad] and speed over alpha p that close an orbit
+TOLERANCE = 1e-12  # of phase [rad] and speed / (alpha p) that close an orbit
 
 
 class OrbitNotFoundError(RockingError):
@@ -30,15 +30,15 @@ class PeriodicOrbit:
     system : HarmonicRocking
         Body and ground motion.
     phase, speed : float
-        Phase of the ground motion [rad] and speed over alpha p after an impact onto the right foot [-].
+        Phase of the ground motion [rad] and speed / (alpha p) after an impact onto the right foot [-].
     impacts, halves : int
         Impacts and half periods until the orbit closes.
     jacobian : ndarray
-        Derivative of phase and speed after `impacts` impacts by those at the start, shape (2, 2).
+        Derivatives after `impacts` impacts with respect to the initial phase and speed, shape (2, 2).
     peak : float
-        Largest rotation over alpha [-].
+        Largest rotation / alpha [-].
     trough : float
-        Smallest minimum of the rotation between impacts over alpha [-]; infinite without one.
+        Smallest minimum of the rotation between impacts / alpha [-]; infinite without one.
     """
 
     system: HarmonicRocking
@@ -74,7 +74,7 @@ class PeriodicOrbit:
 
     @property
     def slowest(self) -> float:
-        """Smallest speed before an impact over alpha p [-]."""
+        """Smallest speed before an impact / (alpha p) [-]."""
         numbers = range(1, self.impacts + 1)
         return min(float(over_impacts(self.system, self.phase, self.speed, n).before[0]) for n in numbers)
 
@@ -95,7 +95,7 @@ def find_orbit(
     system : HarmonicRocking
         Body and ground motion.
     phase, speed : float
-        Phase of the ground motion [rad] and speed over alpha p after an impact onto the right foot [-].
+        Phase of the ground motion [rad] and speed / (alpha p) after an impact onto the right foot [-].
     impacts : int, optional
         Impacts until the orbit closes; even for a body that is not symmetric.
     halves : int, optional
@@ -209,7 +209,7 @@ def slender_orbit(amplitude: float, frequency: float, restitution: float) -> tup
     Returns
     -------
     speed, phase : float
-        Speed over alpha p, and phase of -a(t) [rad].
+        Speed / (alpha p), and phase of -a(t) [rad].
 
     Raises
     ------

@@ -95,7 +95,7 @@ class Diagram(Task):
 
     axis: str
     values: FloatArray
-    starts: FloatArray  # phase [rad] and speed after an impact over alpha p of the initial states; NaN at rest
+    starts: FloatArray  # phase [rad] and speed after an impact / (alpha p) of the initial states; NaN at rest
     sweeps: tuple[str, ...] = ("none",)
     cycles: tuple[int, int] = (300, 200)
     exponents: bool = True
@@ -155,7 +155,7 @@ def _at(system: HarmonicRocking, axis: str, value: float) -> HarmonicRocking:
 
 
 def random_states(number: int, seed: int) -> FloatArray:
-    """Return a start at rest, NaN, and random phases [rad] and speeds over alpha p, below 1, after an impact."""
+    """Return a start at rest, NaN, and random phases [rad] and speeds / (alpha p), below 1, after an impact."""
     draws = np.random.default_rng(seed).random((number, 2)) * [2.0 * math.pi, 1.0]
     draws[0] = np.nan
     return draws

@@ -18,8 +18,8 @@ from rocking.restitution._implied import energy_bound
 
 Parameter = Literal["amplitude", "frequency", "restitution", "slenderness"]
 _CODES = {"none": -1, "": 0, "amplitude": 1, "frequency": 2, "restitution": 3, "slenderness": 4}
-REST_SPEED = 1e-7  # over alpha p: slower impacts end in rest where the ground does not lift the body
-STEP_ERROR = 1e-16  # of one step, over alpha
+REST_SPEED = 1e-7  # / (alpha p): slower impacts end in rest where the ground does not lift the body
+STEP_ERROR = 1e-16  # error of one step / alpha
 NONE, IMPACT, REST, OVERTURNED, FAILED = range(5)  # events of the engine
 
 
@@ -254,9 +254,9 @@ class Numerics:
     Parameters
     ----------
     rest_speed : float, optional
-        Speed over alpha p after an impact below which the body comes to rest if the ground does not lift it [-].
+        Speed / (alpha p) after an impact below which the body comes to rest if the ground does not lift it [-].
     step_error : float, optional
-        Error of one Taylor step over alpha [-].
+        Error of one Taylor step / alpha [-].
     threads : int, optional
         Number of threads.
 
@@ -286,7 +286,7 @@ class Periods:
     ending: Any  # event that ended each history; 0 if it was followed to its end, shape (rows,)
     impacts: Any
     rests: Any  # impacts that ended in rest
-    peak: FloatArray  # largest rotation over alpha
+    peak: FloatArray  # largest rotation / alpha
     growth: FloatArray  # sums of the logarithms of the growth of the tangent vectors, shape (rows, 2)
     states: FloatArray  # rotation [rad] and angular velocity [rad/s], shape (rows, periods, 2); NaN after the end
     # of the first impacts: time [s], angular velocity after the impact, speed before the impact [rad/s], shape
@@ -352,12 +352,12 @@ def _tables(systems: "HarmonicRocking | list[HarmonicRocking]", rows: int) -> tu
 
 @dataclass(frozen=True)
 class ImpactFlights:
-    """Ends of flights from one impact over several: speeds over alpha p, rotations over alpha."""
+    """Ends of flights from one impact over several: speeds / (alpha p), rotations / alpha."""
 
     phase: FloatArray  # of the ground motion at the last impact [rad], shape (rows,)
     speed: FloatArray  # after the last impact
     event: Any  # IMPACT if all impacts took place, REST, OVERTURNED or FAILED
-    jacobian: FloatArray  # derivatives of phase and speed by those at the start, shape (rows, 2, 2)
+    jacobian: FloatArray  # derivatives with respect to initial phase and speed, shape (rows, 2, 2)
     by_parameter: FloatArray  # derivatives of phase and speed, at constant phase at the start, shape (rows, 2)
     peak: FloatArray  # largest rotation
     trough: FloatArray  # smallest minimum of the rotation between impacts, with derivatives; infinite without one
@@ -374,7 +374,7 @@ def over_impacts(
     side: Any = 1.0,
     numerics: Numerics = DEFAULTS,
 ) -> ImpactFlights:
-    """Follow flights from phases and speeds over alpha p after one impact over several impacts, with derivatives.
+    """Follow flights from phases and speeds / (alpha p) after one impact over several impacts, with derivatives.
 
     parameter: that of `by_parameter`, "none" without derivatives; side: 1 for a body over its right foot, -1 left.
     """

@@ -42,7 +42,7 @@ class ContactBedRequest(JobTable):
         json_schema_extra={"examples": [{"varied": "damping", "slenderness": 4}]}, defer_build=False
     )
 
-    varied: Varied = Field("slenderness", description="varied parameter; amplitude and seed belong to an uneven base")
+    varied: Varied = Field("slenderness", description="varied parameter; amplitude and seed are for an uneven base")
     start: float | None = Field(None, alias="from", description="first value; default depends on the parameter")
     stop: float | None = Field(None, alias="to", description="last value; default depends on the parameter")
     count: Annotated[int, Field(ge=1, le=MOST_VALUES)] = Field(40, description="number of values")
@@ -98,7 +98,7 @@ ContactBedAnswered: Any = shape(
     varied=Varied,
     unit=str,
     values=(list[float], "values of the varied parameter, in `unit`"),
-    results=(dict[str, BedResult], "`coefficient` is that of restitution; null where an impact failed"),
+    results=(dict[str, BedResult], "`coefficient` is the coefficient of restitution; null for a failed impact"),
     rigid=(dict[str, list[float]], "coefficient of the same blocks by instantaneous models [-]"),
 )
 

@@ -39,7 +39,7 @@ ParameterFacts: Any = shape(
     description=str,
     default=(
         float | Literal["unlimited"] | None,
-        'in `unit`; "unlimited" where it is infinite, null where one must be given',
+        'in `unit`; "unlimited" for an infinite value, null for a required value',
     ),
 )
 ModelFacts: Any = shape(
@@ -47,9 +47,9 @@ ModelFacts: Any = shape(
     "A restitution model.",
     "name summary",
     label=str,
-    short_name=(str, "in a sentence or a legend"),
-    colour=(str, "of its curves; empty where it has none of its own"),
-    dash=(list[float], "of its curves: lengths of strokes and gaps [px]; empty for a whole line"),
+    short_name=(str, "name in sentences and legends"),
+    colour=(str, "colour of the curves; empty for the default colour"),
+    dash=(list[float], "dashes of the curves: lengths of strokes and gaps [px]; empty for a solid line"),
     title=str,
     citation=str,
     assumptions=list[str],
@@ -79,19 +79,19 @@ FormatFacts: Any = shape(
 UnitNames: Any = shape("UnitNames", "Allowed units.", length=list[str], acceleration=list[str])
 KindOfStudy: Any = shape(
     "KindOfStudy",
-    "A kind of study, and the table that its job has of its own.",
+    "A kind of study, and the table of this kind in the job file.",
     name=str,
     table=str,
-    has_body=(bool, "whether its job has a table of a body"),
-    has_motions=(bool, "whether its job has a table of motions"),
+    has_body=(bool, "true if the job file has a table of a body"),
+    has_motions=(bool, "true if the job file has a table of motions"),
 )
 KeyFacts: Any = shape(
     "KeyFacts",
     "A key of a table or of a step.",
-    unit=(str, "empty where it has none"),
+    unit=(str, "empty without a unit"),
     description=str,
     kind=(str, "text, number, whole number, list of number"),
-    usual=(str, "as it is written; empty where there is none"),
+    usual=(str, "default as text; empty without a default"),
     needed=bool,
     choices=(list[str], "allowed values, if few"),
     ge=(float | None, Field(None, description="lowest value, in the unit of the key")),

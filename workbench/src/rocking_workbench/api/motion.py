@@ -32,7 +32,7 @@ MotionSeries: Any = shape(
     "time[] acceleration[]",
     velocity=(list[float], "velocity"),
     displacement=(list[float], "displacement"),
-    vertical_acceleration=(list[float] | None, Field(None, description="where there is one [m/s2]")),
+    vertical_acceleration=(list[float] | None, Field(None, description="null without a vertical component [m/s2]")),
     samples_shown=int,
     samples=int,
 )

@@ -53,7 +53,7 @@ RecordFacts: Any = shape(
     "Content of a record file and its missing data.",
     RecordKept,
     messages=Messages,
-    format=(str | None, "null where no format fits"),
+    format=(str | None, "null if no format is detected"),
     components=list[ComponentFacts],
     needs=(list[Need], "data required before use"),
     choices=(dict[Need, list[str]], "allowed values"),

@@ -59,7 +59,7 @@ ResponseSeries: Any = shape(
     "Curves of a response with equal lengths; each pixel keeps its extremes.",
     "time[] rotation[] angular_velocity[] kinetic_energy[] potential_energy[] work_of_ground[] energy_lost[] "
     "vertical_force[] ground_acceleration[] ground_displacement[]",
-    friction_demand=(list[float | None], "friction demand; null where no friction suffices"),
+    friction_demand=(list[float | None], "friction demand; null if no friction is sufficient"),
     samples_shown=int,
     samples=(int, "states of the response: samples, events, and where it turns round"),
 )
@@ -86,7 +86,7 @@ ResponseFacts: Any = shape(
     side=(Foot | None, "side to which the body overturned; null if it did not"),
     overturning_time=(float | None, "null if the body does not overturn"),
     still_rocking=bool,
-    last_state=(LastState | None, "null where it rests or has overturned at the end"),
+    last_state=(LastState | None, "null if the body rests or has overturned at the end"),
     lost_contact=bool,
     impacts=list[Impact],
     error_estimate=(float | None, "null if another step changes the outcome"),

@@ -30,7 +30,7 @@ _SPARE = ("#4D9221", "#A6761D", "#7A5195", "#1A1A1A")
 _DASHES = ((0, (3, 2, 8, 2)), (0, (12, 3)), (0, (5, 3, 1, 3)), (0, (2, 2)), "-")
 _BEYOND = 2.2  # largest shown rotation of an overturning body / slenderness angle
 _SMALL = 0.2  # fraction of the slenderness angle below which rotations fill the panel, without lines at +-1
-_SHORT = {Outcome.OVERTURNED: "overturns", Outcome.ROCKED: "stays standing", Outcome.NO_UPLIFT: "is never lifted"}
+_SHORT = {Outcome.OVERTURNED: "overturns", Outcome.ROCKED: "does not overturn", Outcome.NO_UPLIFT: "no uplift"}
 
 
 def figure_of(picture: str, evaluation: Evaluation) -> "Figure":

@@ -13,10 +13,10 @@ Interval = tuple[Number, Number]
 Counts = list[list[list[int]]]
 """Values by restitution, then by row along y; or by restitution, body and scale."""
 
-_OUTCOME = "0 not lifted, 1 stands, 2 overturned, 3 not computed"
-_MODE = "-3 not computed, -2 not lifted, -1 stands, n >= 0 overturns after n impacts"
+_OUTCOME = "0 no uplift, 1 uplift without overturning, 2 overturned, 3 not computed"
+_MODE = "-3 not computed, -2 no uplift, -1 uplift without overturning, n >= 0 overturning after n impacts"
 _MEASURE = "in the unit of the measure"
-_PEAK = "peak rotation over alpha"
+_PEAK = "peak rotation / slenderness angle"
 
 
 def _left_out(description: str, default: Any = None) -> Any:
@@ -28,7 +28,7 @@ Coordinate: Any = shape(
     "Coordinate",
     "A dimension of a study.",
     name=str,
-    values=(list[float | int | str | None], "in `unit`; null where a value is not finite"),
+    values=(list[float | int | str | None], "in `unit`; null for a value that is not finite"),
     unit=str,
     description=str,
 )
@@ -56,11 +56,11 @@ StandardErrors: Any = shape(
 )
 FitFacts: Any = shape(
     "FitFacts",
-    "The lognormal curve of one state; null where the data fix none.",
+    "The lognormal curve of one limit state; null if the data do not determine a curve.",
     median=(Number, _MEASURE),
     dispersion=(Number, "standard deviation of the natural logarithm [-]"),
-    median_95=(Interval, f"95 % interval, {_MEASURE}; null where it is open"),
-    dispersion_95=(Interval, "95 % interval [-]; null where it is open"),
+    median_95=(Interval, f"95 % interval, {_MEASURE}; null for an open interval"),
+    dispersion_95=(Interval, "95 % interval [-]; null for an open interval"),
     interval_method=str | None,
     standard_errors=StandardErrors | None,
     log_likelihood=(Number, "[-]"),
@@ -104,7 +104,7 @@ Crossing: Any = shape(
     "Levels at which one motion overturns the body.",
     motion=str | int,
     start=(Number, _MEASURE),
-    end=(Number, f"null where it is open, {_MEASURE}"),
+    end=(Number, f"null for an open end, {_MEASURE}"),
 )
 FirstCrossingFit: Any = shape(
     "FirstCrossingFit",
@@ -124,13 +124,13 @@ AnalysisFacts: Any = shape(
     failed=int,
     states=list[str],
     points=(dict[str, PointsOfState], "by state", ""),
-    adjusted=(str, "why curves are not those of each state alone; empty where they are"),
+    adjusted=(str, "reason for curves that were not fitted separately; empty for separate fits"),
     fits=(dict[str, FitFacts], "by state"),
     curves=(dict[str, CurveOfState], "by state"),
     verdicts=(dict[str, str], "what can be said of each fit, by state"),
     common=(list[str], "states whose curves have one dispersion"),
-    regression=(RegressionAnswer | None, _left_out("of a cloud")),
-    regression_words=(str | None, _left_out("why a cloud has no line")),
+    regression=(RegressionAnswer | None, _left_out("regression of a cloud analysis")),
+    regression_words=(str | None, _left_out("reason for a missing regression line")),
     cloud=(CloudPoints | None, Field(None)),
     definitions=(dict[str, str] | None, _left_out("of an incremental analysis")),
     first_crossings=(list[Number] | None, _left_out(f"by motion, {_MEASURE}; null if it never overturns")),
@@ -146,7 +146,7 @@ FragilityResult: Any = shape(
     im=QuantityAnswer,
     motions=Coordinate,
     definition=str,
-    uplift_threshold=(float | None, f"least level that lifts, {_MEASURE}; null where none is known"),
+    uplift_threshold=(float | None, f"smallest level with uplift, {_MEASURE}; null if unknown"),
     analyses=list[AnalysisFacts],
 )
 ColumnAnswer: Any = shape(
@@ -191,10 +191,10 @@ SpectrumCurve: Any = shape(
     "One curve of a rocking spectrum; entries along `x`.",
     restitution=str,
     angle=(float, "slenderness angle", "rotation"),
-    low=(list[Number], "16 % of the motions: peak over alpha [-]; null where they overturn"),
-    median=(list[Number], f"{_PEAK} [-]; null where half of the motions overturn"),
-    high=(list[Number], "84 % of the motions: peak over alpha [-]; null where they overturn"),
-    overturned=(list[float | None], "share that overturns of the motions with a result [-]"),
+    low=(list[Number], "16 % quantile of the peak rotation / slenderness angle [-]; null if overturned"),
+    median=(list[Number], f"{_PEAK} [-]; null if half of the motions overturn the body"),
+    high=(list[Number], "84 % quantile of the peak rotation / slenderness angle [-]; null if overturned"),
+    overturned=(list[float | None], "overturning fraction of the motions with a result [-]"),
     coefficient=(list[Number], "of restitution", "coefficient"),
 )
 SpectrumResult: Any = shape(
@@ -219,7 +219,7 @@ Cells: Any = shape(
 )
 HistoriesResult: Any = shape(
     "HistoriesResult",
-    "Plain histories.",
+    "Results of a study of kind `histories`.",
     Result,
     kind=Literal["histories"],
     motions=Coordinate,
@@ -228,8 +228,8 @@ HistoriesResult: Any = shape(
     slenderness_angles=Coordinate,
     shares=list[list[Share]],
     cells=Cells,
-    mode=(list[Counts] | None, _left_out("of each, where there are at most 20,000")),
-    peak=(list[list[list[list[Number]]]] | None, _left_out(f"{_PEAK} of each [-]")),
+    mode=(list[Counts] | None, _left_out("of each simulation, if there are at most 20,000")),
+    peak=(list[list[list[list[Number]]]] | None, _left_out(f"{_PEAK} of each simulation [-]")),
 )
 MinimumResult: Any = shape(
     "MinimumResult",
@@ -284,7 +284,7 @@ StoredHistory: Any = shape(
     impacts=int,
     peak_rotation=(float | None, "null if it was not computed"),
     peak_ratio=(float | None, "null if it was not computed"),
-    overturning_time=(float | None, "null if it stands"),
+    overturning_time=(float | None, "null without overturning"),
 )
 HistoryAnswer: Any = shape(
     "HistoryAnswer",
@@ -292,7 +292,7 @@ HistoryAnswer: Any = shape(
     stored=StoredHistory,
     messages=Messages,
     inputs=(Inputs | None, "inputs of the same simulation; null if inputs cannot express it"),
-    answer=(ResponseFacts | None, "null where there is no response"),
+    answer=(ResponseFacts | None, "null without a response"),
     difference=(float | None, "between the peaks of `stored` and `answer`"),
     note=(str, "note on missing data, or empty"),
     units=Units,

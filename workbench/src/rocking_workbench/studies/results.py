@@ -111,7 +111,7 @@ def tables_of(study: OpenStudy) -> dict[str, Any]:
 
 
 def product_result(study: OpenStudy) -> dict[str, Any]:
-    """Return the counts of plain histories."""
+    """Return the counts of outcomes, and median peaks, of a study of kind `histories`."""
     modes, peaks = by_restitution(study, "mode"), by_restitution(study, "peak_ratio")
     computed = modes != -3
     with warnings.catch_warnings():  # no median if all motions overturn the body

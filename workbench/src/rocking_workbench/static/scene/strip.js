@@ -1,4 +1,4 @@
-/** Strip under the stage: all rotations over alpha, with a line at the present time. */
+/** Strip under the stage: all rotations / alpha, with a line at the present time. */
 import { fixed } from "/app/format.js";
 import { highest } from "/app/extremes.js";
 import { t } from "/app/words.js";
@@ -74,7 +74,7 @@ export class Strip {
     return LEFT + ((this.width - LEFT - RIGHT) * time) / this.play.end;
   }
 
-  /** Pixel of a rotation over alpha. @param {number} share */
+  /** Pixel of a rotation / alpha. @param {number} share */
   up(share) {
     const half = 0.5 * (this.height - TOP - BOTTOM);
     return TOP + half - (half * share) / this.span;

@@ -5,7 +5,7 @@ const ARRAYS = { 5126: Float32Array, 5125: Uint32Array, 5121: Uint8Array };
 /** @type {{ [kind: string]: number }} */
 const WIDTHS = { SCALAR: 1, VEC3: 3, VEC4: 4 };
 
-/** Content of the file: arrays, and the data without a glTF key, from the center of mass, z up.
+/** Arrays of the file, and the values in `extras.rocking`. Coordinates are relative to the centre of mass, with z up.
  * @param {ArrayBuffer} buffer @returns {SpaceModel} */
 export const readGlb = (buffer) => {
   const length = new DataView(buffer).getUint32(12, true);

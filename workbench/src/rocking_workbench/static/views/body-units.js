@@ -3,7 +3,7 @@
 import { tidy } from "/app/format.js";
 import { LENGTHS } from "/app/shape.js";
 
-/** Metres in each unit. */
+/** Length of each unit in metres. */
 export const METRES = { m: 1, cm: 0.01, mm: 0.001, ft: 0.3048, in: 0.0254 };
 
 /** The body with its lengths in another unit.

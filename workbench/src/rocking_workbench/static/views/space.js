@@ -99,7 +99,7 @@ const Space = ({ app, questions }) => {
     pose.value = { number: number_, up: direction };
     app.say(t("The next run uses the body in pose {pose}.", { pose: number_ }));
   };
-  // The view keeps one component. A new component would redraw the scene at every typed character.
+  // The component is created once. A new component would redraw the scene at every typed character.
   const Found = useRef((/** @type {any} */ { answer, question }) => html`
     <${Answer} key=${question.id} answer=${answer} question=${question} onPose=${goOn} />`).current;
   return html`

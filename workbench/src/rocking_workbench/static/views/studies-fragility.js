@@ -52,7 +52,7 @@ const whyNone = (verdict, threshold, unit) => stopped(t("No curve: {reason}", {
 
 /** Text for uplift without a fit: the measure determines uplift exactly, so that there is no probability to fit.
  * @param {number | null} threshold @param {string} unit */
-const stepWords = (threshold, unit) => (threshold === null ? "these fractions allow no fit"
+const stepWords = (threshold, unit) => (threshold === null ? "no curve can be fitted to these fractions"
   : t("no uplift below {acceleration}, always uplift above it: a step from 0 to 1", { acceleration: quantity(threshold, unit) }));
 
 const NO_CURVE = { x: [], probability: [], low: null, high: null };
