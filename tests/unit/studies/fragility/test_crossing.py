@@ -116,7 +116,7 @@ def test_a_state_that_would_still_cross_is_left_out():
     late = FragilityCurve("rocking", 2.6, 0.1)
     made = without_crossing(model((late, FAR, OVER), uplift_threshold=0.5))
     assert [curve.state for curve in made.curves] == ["rotation > 0.5 alpha", "overturned"]
-    assert made.without["rocking"].startswith("The state rocking is omitted")
+    assert made.without["rocking"].startswith("The limit state rocking is omitted")
     assert made.without["rocking"] in made.adjusted
     early = without_crossing(model((FragilityCurve("rocking", 0.9, 0.1), FAR, OVER), uplift_threshold=0.8))
     assert [curve.state for curve in early.curves] == ["rocking", "rotation > 0.5 alpha", "overturned"]
