@@ -198,7 +198,7 @@ def test_coarser_is_filtered() -> None:
 
 
 def test_steps_typed_to_a_few_digits() -> None:
-    """A step is an integer multiple if it is one to a part in a million: 2 and 5 times a thirtieth in seven decimals."""
+    """A step is an integer multiple to a part in a million: 2 and 5 times a thirtieth in seven decimals."""
     motion = GroundMotion(np.sin(0.1 * np.arange(200)), 1.0 / 30.0)
     for step, samples in ((0.0666667, 100), (0.1666667, 40)):
         assert len(resampled(motion, step)) == samples
