@@ -47,7 +47,22 @@ def record(file):
     return file("\n".join(" ".join(f"{x:.6f}" for x in row) for row in rows) + "\n", "record.txt")
 
 
-def test_json_is_python_to_the_last_digit(answered, body):
+@pytest.fixture
+def followed_once(monkeypatch):
+    """Follow a history once for all doors that ask for the same motions, law, settings and duration."""
+    follow, histories = response.response_in_space, {}
+
+    def kept(body, motions, restitution, settings, **options):
+        key = repr((SpatialBody.of(body).inertia, motions, restitution, settings, options))
+        if key not in histories:
+            histories[key] = follow(body, motions, restitution, settings, **options)
+        return histories[key]
+
+    monkeypatch.setattr(response, "response_in_space", kept)
+    return histories
+
+
+def test_json_is_python_to_the_last_digit(answered, body, followed_once):
     """x by word or option, y and z by options, restitution, scale and gravity: all are rk.simulate."""
     solid, other = rk.read_body(body), rk.pulses.sine(2.9, 0.6)
     expected = rk.simulate(solid, {"x": MOTION, "y": other})
@@ -173,27 +188,12 @@ def test_free_rocking_of_a_solid_in_words_and_files(printed, answered, body, tmp
     assert "initial_tilt" not in answered(body, SINE)
 
 
-def test_capitals_of_a_model_do_not_matter(run, answered, body):
+def test_capitals_of_a_model_do_not_matter(run, answered, body, followed_once):
     """`KED-3D` is `ked-3d`; what is no model is named as it was written."""
     words = (body, "--motion", "sine:amplitude=2.9,period=0.6", "--restitution")
     upper, lower = (answered(*words, name) for name in ("KED-3D", "ked-3d"))
     assert upper["peak_tilt"] == lower["peak_tilt"]
     assert run(*words, "KED-3E")[0] == 2
-
-
-@pytest.fixture
-def followed_once(monkeypatch):
-    """Follow a history once for all doors that ask for the same motions, law, settings and duration."""
-    follow, histories = response.response_in_space, {}
-
-    def kept(body, motions, restitution, settings, **options):
-        key = repr((SpatialBody.of(body).inertia, motions, restitution, settings, options))
-        if key not in histories:
-            histories[key] = follow(body, motions, restitution, settings, **options)
-        return histories[key]
-
-    monkeypatch.setattr(response, "response_in_space", kept)
-    return histories
 
 
 def test_a_round_base_is_followed_to_rest_or_its_end_has_a_reason(printed, answered, tmp_path, followed_once):

@@ -146,7 +146,7 @@ def test_a_position_of_the_impulse_in_both_engines():
 def test_a_prediction_of_a_solid():
     """Probabilities grow with the motion; the same seed gives the same answer on one and on two threads."""
     motions = [rk.pulses.sine(amplitude, 0.9) for amplitude in (0.5, 4.0, 8.0)]
-    given = {"count": 16, "friction": 0.6, "contributions": False, "seed": 3}
+    given = {"count": 8, "friction": 0.6, "contributions": False, "seed": 3}
     one, two = (rk.predict(stone(), motions, threads=threads, **given) for threads in (1, 2))
     assert one.answer().plain()["probability"]["uplift"]["per_motion"][0] == 0.0
     assert one.chances["overturning"].per_motion.tolist() == two.chances["overturning"].per_motion.tolist()
