@@ -25,6 +25,7 @@ _SMALL_SCATTER = 0.02
 """The prior is flat in a smaller scatter, and flat in the logarithm of a larger scatter; usual: 1 to 3 % [-]."""
 
 _COARSE, _FINE, _NEGLIGIBLE = (9, 7), (11, 9), 1e-4
+_BELOW_ROUNDING = 1e-19  # weight of a node that changes no probability of a mixture of a hundred nodes
 
 Nodes = tuple[FloatArray, FloatArray]
 """Values of a scatter or a noise, and the logarithms of their prior probabilities."""
@@ -115,10 +116,11 @@ class Mixture:
         """Return the quantiles at the given probabilities."""
         low = np.full(len(levels), (self.means - 9.0 * self.deviations).min())
         high = np.full(len(levels), (self.means + 9.0 * self.deviations).max())
+        kept = self.weights > _BELOW_ROUNDING
+        weights, means, deviations = self.weights[kept], self.means[kept], np.maximum(self.deviations[kept], 1e-300)
         for _ in range(60):
             middle = 0.5 * (low + high)
-            z = (middle[:, None] - self.means) / np.maximum(self.deviations, 1e-300)
-            under = ndtr(z) @ self.weights < np.array(levels)
+            under = ndtr((middle[:, None] - means) / deviations) @ weights < np.array(levels)
             low, high = np.where(under, middle, low), np.where(under, high, middle)
         return tuple((0.5 * (low + high)).tolist())
 
