@@ -711,7 +711,7 @@ _PARTS = """
     not_objects not_read not_sampled note notes objects one_by_one other_models outcome_pairs outside
     overturned_cells overturning passed_over
     passes plan plane_is_weakest poses prediction progress reason reasons records refused reliability remedies
-    resolved restitution_drawn restraint_events restraint_laws restraints results
+    resolved restitution_sampled restraint_events restraint_laws restraints results
     rigid rings scores section sense sensitivity sentence sentences sets sides
     slow software solid source sources spacing spectrum stable stages standing starts_overturned
     starts_per_amplitude stated statement stored tables target target_spectrum test text threads title to too_sure

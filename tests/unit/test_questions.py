@@ -50,19 +50,20 @@ def test_every_key_has_type_unit_default_range_and_meaning():
     assert len(rows) > 300
     assert [row for row in rows if len(row) != 6 or not all(row)] == []
     assert [row for row in rows if row[4].startswith("any") and len(row[4].split()) < 3] == []
+    assert [row for row in rows if "default" in row[5]] == []
 
 
 def test_facts_come_from_the_field():
-    """Limits, choices and lengths come from the type; a number without limits or reason has no range."""
+    """Limits, choices and lengths come from the type, the default from its fact and never from the description."""
 
     class Table(JobTable):
-        length: float | None = key("length, default 2 m [m]", None, gt=0.0)
+        length: float | None = key("length, default 3 m [m]", None, usual="2 m", gt=0.0)
         loads: list[float] = key("loads [N]", ...)
         side: Literal["left", "right"] = key("side", "left")
         name: Text | None = key("name", usual="name of the file")
 
     fields = Table.model_fields
-    assert facts(fields["length"]) == ("number", "m", "2 m", "> 0", "length")
+    assert facts(fields["length"]) == ("number", "m", "2 m", "> 0", "length, default 3 m")
     assert facts(fields["loads"]) == ("list of numbers", "N", "required", "any number of numbers", "loads")
     assert facts(fields["side"]) == ("text", "-", "`left`", "left, right", "side")
     assert facts(fields["name"]) == ("text", "-", "name of the file", "1 to 200 characters", "name")
@@ -92,7 +93,7 @@ def test_the_ranges_of_thresholds_are_those_of_the_class(name):
 
 
 def test_the_defaults_of_restraints_and_identifications_are_those_of_the_functions():
-    """A default that a description states is the default of the class or function."""
+    """A stated default is the default of the class or function."""
     for kind in KINDS.values():
         for entry in dataclasses.fields(kind):
             if isinstance(entry.default, (bool, int, float)) and entry.default < math.inf:

@@ -194,7 +194,7 @@ class InventoryAnswer:
             page.line("Advice, all objects and definitions: --details    Reports: -o FOLDER, -o report.pdf")
 
     def _show_objects(self, page: Page, say: Any) -> None:
-        """Write one line per object, with the other models if they differ, and the advice with details."""
+        """Write one line per object with the rating of each model, and the advice with details."""
         from rich.text import Text
 
         from rocking.decision.inventory import ranking
@@ -202,12 +202,15 @@ class InventoryAnswer:
 
         assessment = self.assessment
         count = len(assessment.verdicts) if self.details else _MOST_OBJECTS
+        models = [assessment.restitution, *assessment.comparisons]
+        page.line(f"     {'  '.join(f'{name:<7}' for name in models)}  {say('object')}", "dim")
         for rank, verdict in enumerate(assessment.verdicts[:count], start=1):
             line = Text(f"{rank:3}  ")
-            line.append(f"{say(LIGHT_MARKS[verdict.light]):<7}", style=_STYLES[verdict.light.name])
-            line.append(f"  {ranking.named(verdict, say)}: {ranking.sentence(verdict, assessment)}")
+            for name, light in ranking.lights_by_model(verdict, assessment):
+                line.append(f"{say(LIGHT_MARKS[light]):<{max(7, len(name))}}  ", style=_STYLES[light.name])
+            line.append(f"{ranking.named(verdict, say)}: {ranking.sentence(verdict, assessment)}")
             page.rich(line)
-            names = ("advice", "model_note", "noted") if self.details else ("model_note",)
+            names = ("advice", "model_note", "noted") if self.details else ()
             if notes := " ".join(filter(None, (getattr(ranking, name)(verdict, assessment) for name in names))):
                 page.line(f"{'':12} {notes}", "dim")
         if (remaining := len(assessment.verdicts) - count) > 0:

@@ -13,7 +13,7 @@ from rocking.cli import completion
 from rocking.cli.help import HOW, OUTPUT, SHAKING, SIZE
 from rocking.conventions import DEFAULT_RESTITUTION, UNITS
 from rocking.spec.documents.prediction import PredictTable
-from rocking.spec.fields import Values, kinds_of, meaning_and_unit
+from rocking.spec.fields import Values, kinds_of, meaning_and_unit, stated_facts
 from rocking.spec.motion_tables import ComponentsTable
 from rocking.spec.settings_tables import StudySettingsTable
 
@@ -29,9 +29,13 @@ ROW = ": FIRST:LAST:COUNT, FIRST:LAST:COUNT:log or A,B,C"
 
 
 def key(table: type[Any], name: str, more: str = "", **options: Any) -> Any:
-    """Return the option of a key of a table, with the key's description as its help."""
-    text = (table.model_fields[name].description or "").replace("unit of the file", "m, or --units")
-    return typer.Option(help=f"{text[:1].upper()}{text[1:]}{more}.".replace("[", r"\["), **options)
+    """Return the option of a key of a table, with the key's description and stated default as its help."""
+    field = table.model_fields[name]
+    text = (field.description or "").replace("unit of the file", "m, or --units")
+    usual = stated_facts(field).get("usual", "")
+    is_value = usual and field.default is None and not usual.startswith(("no ", "required"))
+    default = f" [default: {usual}]" if is_value else ""
+    return typer.Option(help=f"{text[:1].upper()}{text[1:]}{more}.{default}".replace("[", r"\["), **options)
 
 
 def keys(

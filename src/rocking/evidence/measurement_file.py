@@ -88,7 +88,9 @@ class Measurement(BlockSides):  # type: ignore[misc]  # made of the fields of a 
     method: Word = Field(description="method of measurement: sound, video, laser, ...")
     block: Word = Field(description="name of the block; rows of one block have a common deviation")
     laboratory: Word | None = Field(None, description="laboratory of the measurement")
-    group: Word | None = Field(None, description="data set of the measurement; default: laboratory or source")
+    group: Word | None = Field(
+        None, description="data set of the measurement", json_schema_extra={"usual": "laboratory or source"}
+    )
     material: Word | None = Field(None, description="material of the block")
     doi: Annotated[str, Field(pattern=r"^10\.\d{4,9}/\S+$", max_length=300)] | None = Field(
         None, description="DOI of the source, such as 10.3390/buildings14072119"

@@ -115,7 +115,7 @@ def look_at(assessment: Assessment) -> list[tuple[str, str]]:
         names, more = ", ".join(red[:_MOST_NAMED]), len(red) - _MOST_NAMED
         names = say("{names} and {count} more", names=names, count=more) if more > 0 else names
         lines.append((say("Highest priority"), names))
-    undecided = sum(verdict.model_decides for verdict in assessment.verdicts)
+    undecided = sum(verdict.depends_on_model for verdict in assessment.verdicts)
     if undecided:
         sentence_on_models = say(
             "the rating of {count} object changes with the restitution model",
@@ -172,14 +172,14 @@ class _Sections:
         sentences = [sentence(verdict, self.assessment), noted(verdict, self.assessment)]
         if item.photo is not None and not self.photos.get(index):
             sentences.append(say("The photo {file} cannot be shown.", file=item.photo.name))
-        what_to_do = f"{advice(verdict, self.assessment)} {model_note(verdict, self.assessment)}"
+        measures = f"{advice(verdict, self.assessment)} {model_note(verdict, self.assessment)}"
         object_cell = Cell(named(verdict, say), picture=self.photos.get(index, ""))
         return [
             index + 1,
             self._light(verdict.light),
             object_cell,
             " ".join(filter(None, sentences)),
-            what_to_do.strip(),
+            measures.strip(),
         ]
 
     def _light(self, light: Light, mark: str | None = None) -> Cell:

@@ -40,7 +40,7 @@ MOST_BYTES, MOST_PIXELS = 64 << 20, 100_000_000
 
 SIDE = 240  # largest side of a thumbnail [pixels]
 _FORMATS = ("JPEG", "PNG", "WEBP", "TIFF", "GIF", "BMP")
-_WIDTHS = {"number": 18, "name": 28, "words": 70, "advice": 70, "note": 28, "light": 14, "remarks": 40}
+_WIDTHS = {"number": 18, "name": 28, "words": 70, "advice": 70, "note": 28, "rating": 14, "remarks": 40}
 
 
 def thumbnails(assessment: Assessment, folder: Path) -> dict[int, str]:
@@ -217,7 +217,7 @@ def _dress(sheet: Any, widths: list[int]) -> None:
 def _colour(sheet: Any, lights: list[Light | None]) -> None:
     styles = extra("openpyxl.styles", "the spreadsheet")
     for i, light in enumerate(lights, start=2):
-        cell = sheet.cell(row=i, column=COLUMNS.index("light") + 1)
+        cell = sheet.cell(row=i, column=COLUMNS.index("rating") + 1)
         cell.fill = styles.PatternFill("solid", start_color=FILLS[light])
 
 

@@ -62,6 +62,12 @@ def meaning_and_unit(description: str) -> tuple[str, str]:
     return (meaning.strip(), unit) if bracket and text.endswith("]") else (description.strip(), "")
 
 
+def stated_facts(field: FieldInfo) -> dict[str, str]:
+    """Return the facts of a key that `key` states by name: usual, allowed, unit."""
+    extra = field.json_schema_extra if isinstance(field.json_schema_extra, dict) else {}
+    return {name: str(text) for name, text in extra.items()}
+
+
 def kinds_of(field: FieldInfo) -> list[Any]:
     """Return the types of a field without limits and without None."""
     inner = get_args(field.annotation) if get_origin(field.annotation) in {Union, UnionType} else [field.annotation]

@@ -1,6 +1,5 @@
 """Type, unit, default, range and meaning of a key of a file, from the field of its table."""
 
-import re
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
@@ -8,32 +7,26 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
-from rocking.spec.fields import Angle, Values, limits_of, meaning_and_unit
+from rocking.spec.fields import Angle, Values, limits_of, meaning_and_unit, stated_facts
 
 LARGEST_SHOWN = 1e9  # larger limits are limits of memory, not of the quantity
 _SIGNS = {"ge": ">=", "gt": ">", "le": "<=", "lt": "<"}
 _TYPES: dict[Any, str] = {str: "text", Angle: "text", float: "number", int: "integer", bool: "boolean"}
-_DEFAULT = re.compile(r"(?P<meaning>.*?)[,;]? default:? (?P<usual>[^)]*)")
 
 
 def facts(field: FieldInfo) -> tuple[str, str, str, str, str]:
     """Return type, unit, default, range and meaning of a key.
 
-    A field without limits states its range as `allowed`. The default is the value of the field, the end of its
-    description, or `usual`.
+    A field without limits states its range as `allowed`.
     """
-    extra = field.json_schema_extra if isinstance(field.json_schema_extra, dict) else {}
-    stated = {name: str(text) for name, text in extra.items()}
+    stated = stated_facts(field)
     meaning, unit = meaning_and_unit(field.description or "")
     if '"' in unit:  # the name of a table
         meaning, unit = f"{meaning} [{unit}]", ""
-    match = _DEFAULT.fullmatch(meaning)
-    meaning, usual = (match["meaning"], match["usual"]) if match else (meaning, "none")
-    default = "required" if field.is_required() else as_code(field.default) or stated.get("usual", usual)
     return (
         type_of(field.annotation),
         stated.get("unit") or unit or "-",
-        default,
+        "required" if field.is_required() else as_code(field.default) or stated.get("usual", "none"),
         stated.get("allowed") or range_of(field.annotation, (field,)),
         meaning,
     )

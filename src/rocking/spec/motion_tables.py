@@ -17,9 +17,9 @@ class FileKeys(JobTable):
     """Format, unit, time step and skipped lines of a record file."""
 
     format: Text | None = key(
-        "format of the record file from rocking record formats, default: detected from the content",
+        "format of the record file from rocking record formats", usual="detected from the content",
         allowed="a name from `rocking record formats`",
-    )
+    )  # fmt: skip
     units: Text | None = key(
         "unit of a record file without unit: m/s2, cm/s2, mm/s2, gal, g, g/10, mg",
         usual="unit in the file; required without", allowed="a unit of the list",
@@ -155,9 +155,9 @@ class MotionTable(_Along, MotionKeys):
         usual="no scaling to a spectrum", allowed="a spectrum of the page Names of values, or an existing file",
     )  # fmt: skip
     periods: Annotated[list[Positive], Field(min_length=2, max_length=2)] | None = key(
-        "shortest and longest period of the comparison with the target spectrum, default 0.1 and 2 [s]",
+        "shortest and longest period of the comparison with the target spectrum [s]", usual="0.1 and 2",
         allowed="2 increasing numbers > 0",
-    )
+    )  # fmt: skip
     mirrored: bool = key("add every record with reversed horizontal components", False)
 
     @model_validator(mode="after")

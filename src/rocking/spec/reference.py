@@ -16,7 +16,7 @@ from rocking.dynamics import ContactSettings, PlaneSettings, Settings, SpaceSett
 from rocking.spec.documents.identification import IdentifyTable, MeasurementTable
 from rocking.spec.documents.prediction import AssessTable, PredictTable
 from rocking.spec.documents.response import ResponseTable
-from rocking.spec.fields import JobTable, Values, limits_of, meaning_and_unit
+from rocking.spec.fields import JobTable, Values, limits_of, meaning_and_unit, stated_facts
 from rocking.spec.key_facts import LARGEST_SHOWN, as_code, facts
 from rocking.spec.motion_tables import ComponentsTable, FileKeys, MotionTable
 from rocking.spec.question import BodyQuestion, CampaignTable
@@ -113,7 +113,13 @@ def described(table: type[BaseModel]) -> dict[str, dict[str, Any]]:
     """Return unit, meaning, type, default, choices and limits of the keys of a table, by key."""
     return {
         field.alias or key: {
-            **_facts_of_key(field.description or "", field.default, field.annotation, needed=field.is_required()),
+            **_facts_of_key(
+                field.description or "",
+                field.default,
+                field.annotation,
+                needed=field.is_required(),
+                usual=stated_facts(field).get("usual", ""),
+            ),
             **limits_of(field),
         }
         for key, field in table.model_fields.items()
@@ -180,14 +186,16 @@ def _documented(function: Callable[..., Any], keys: Mapping[str, Parameter]) -> 
     }
 
 
-def _facts_of_key(description: str, default: Any, annotation: Any, *, needed: bool = False) -> dict[str, Any]:
+def _facts_of_key(
+    description: str, default: Any, annotation: Any, *, needed: bool = False, usual: str = ""
+) -> dict[str, Any]:
     """Return unit, meaning, type, default and choices of a key."""
     meaning, unit = meaning_and_unit(description)
     return {
         "unit": unit,
         "description": meaning,
         "kind": _kind(annotation),
-        "usual": as_code(default).strip("`"),
+        "usual": as_code(default).strip("`") or usual,
         "needed": needed,
         "choices": list(_choices(annotation)),
     }

@@ -31,7 +31,7 @@ class RandomTable(JobTable):
     times: str | float = key(
         "model or number that is multiplied by the sampled values", 1.0, allowed="a name from `rocking models`, or > 0"
     )
-    seed: Seed | None = key("random seed, default: seed of the campaign")
+    seed: Seed | None = key("random seed", usual="seed of the campaign")
 
     @model_validator(mode="after")
     def _one_distribution(self) -> "RandomTable":

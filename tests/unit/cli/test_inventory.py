@@ -69,6 +69,20 @@ def test_report_is_written(printed, objects, tmp_path):
     assert json.loads((tmp_path / "out" / "inventory.json").read_text(encoding="utf-8"))["restitution"] == "0.9"
 
 
+def test_the_table_has_the_rating_of_each_model(printed, answered, objects):
+    """The columns of an object are its ratings by the model of the result, then by the models of comparison."""
+    options = (objects, "--pga", "0.2g", *FEW)
+    answer, lines = answered(*options), printed(*options).splitlines()
+    models = [answer["restitution"], *answer["comparisons"]]
+    start = next(k for k, line in enumerate(lines) if line.split()[: len(models)] == models)
+    assert models == ["calibrated", "housner", "ked"]
+    for line, item in zip(lines[start + 1 :], answer["objects"], strict=False):
+        ratings = [item["rating"], *(item["rating_by_comparison"][name] for name in models[1:])]
+        assert line.split()[1:4] == [rating.upper() for rating in ratings]
+        assert item["depends_on_model"] is (len(set(ratings)) > 1)
+    assert sum(item["depends_on_model"] for item in answer["objects"]) < len(answer["objects"])  # negative control
+
+
 def test_level_without_a_leading_zero(answered, objects):
     """A level may be typed as .3g."""
     assert answered(objects, "--pga", ".3g", *FEW)["hazard"]["level"] == "PGA 0.3 g"

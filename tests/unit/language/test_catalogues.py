@@ -84,7 +84,7 @@ def test_translations_have_the_names_of_their_messages(code):
     new = {"`cor`", "--shake", "response.free", "start_height"}
     assert other_names(catalogue, is_chinese=False) == new
     assert {"free", "cor"} <= other_names(catalogue, is_chinese=True)
-    text = "format of the record file from rocking record formats, default: detected from the content"
+    text = "format of the record file from rocking record formats"
     catalogue[text].string = "rocking formats"
     assert other_names(catalogue, is_chinese=False) == {*new, "rocking record formats"}
 

@@ -80,12 +80,12 @@ def test_files_are_in_the_language_and_keys_are_not(found, tmp_path):
     assert book.sheetnames == ["Rangliste", "Maßnahmen", "Erklärung"]
     cells = [str(cell.value) for sheet in book for row in sheet.iter_rows() for cell in row]
     assert foreign("\n".join(cells), "de") == []
-    assert made["csv"].read_text("utf-8-sig").startswith("rank,light,inventory number,name,count,")
+    assert made["csv"].read_text("utf-8-sig").startswith("rank,rating,inventory number,name,count,")
     assert ",red,,Vase," in made["csv"].read_text("utf-8-sig")
     plain = json.loads(made["json"].read_text("utf-8"))
     assert plain.keys() == answer_of(replace(found, language="en")).plain().keys()
-    assert plain["objects"][0]["light"] == "red"
-    assert plain["plan"][0]["in_words"].startswith("Vase: Standfläche auf jeder Seite ")
+    assert plain["objects"][0]["rating"] == "red"
+    assert plain["plan"][0]["text"].startswith("Vase: Standfläche auf jeder Seite ")
 
 
 def test_a_language_without_words_says_so(found):

@@ -56,7 +56,7 @@ def test_json(found, tmp_path):
     assert plain["not_objects"] == [{"row": 5, "text": "Summe: 3", "reason": "eine Summe oder ein Mittelwert"}]
     assert plain["plan"][0]["number"] == "A-17"
     assert plain["header_lines"] == [1]
-    assert plain["plan"][0]["in_words"].startswith("A-17 Vase: ")
+    assert plain["plan"][0]["text"].startswith("A-17 Vase: ")
 
 
 def test_tables(found, tmp_path):

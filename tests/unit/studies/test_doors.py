@@ -68,7 +68,7 @@ def test_inventory_is_the_assessment():
     assert labelled["restitution"].values.tolist() == [found.restitution, *found.comparisons]
     for place, verdict in enumerate(found.verdicts):
         one = labelled.isel(object=place)
-        assert str(one["light"].values) == verdict.light.word
+        assert str(one["rating"].values) == verdict.light.word
         assert tuple(one["overturned_fraction_95"].values) == verdict.interval
         assert float(one["uplift_acceleration"]) == verdict.uplift_acceleration
         for model, results in enumerate((verdict.results, *verdict.compared)):
@@ -88,8 +88,8 @@ def test_the_command_and_the_door_say_the_same(tmp_path, answered):
     labelled = rk.inventory(path, "point-source", pga="0.3g", count=4, seed=2)
     said = answered("inventory", path, "--synthetic", "point-source", "--pga", "0.3g", "--count", 4, "--seed", 2)
     assert labelled["object"].values.tolist() == [each["name"] for each in said["objects"]]
-    assert labelled["light"].values.tolist() == [each["light"] for each in said["objects"]]
-    assert labelled["in_words"].values.tolist() == [each["in_words"] for each in said["objects"]]
+    assert labelled["rating"].values.tolist() == [each["rating"] for each in said["objects"]]
+    assert labelled["text"].values.tolist() == [each["text"] for each in said["objects"]]
     assert labelled["not_assessed"].values.tolist() == ["broken"]
     assert labelled["reason"].values.tolist() == [each["reason"] for each in said["not_assessed"]]
 
@@ -101,7 +101,7 @@ def test_negative_control_thresholds_move_the_lights():
         for limits in (None, Thresholds(overturning_green=0.01, overturning_red=0.99, rocking=0.01))
     )
     np.testing.assert_array_equal(usual["overturned"], strict["overturned"])
-    assert usual["light"].values.tolist() != strict["light"].values.tolist()
+    assert usual["rating"].values.tolist() != strict["rating"].values.tolist()
 
 
 BODY = rk.Section.from_points([(0.0, 0.0), (0.3, 0.0), (0.36, 1.5), (0.1, 1.5)])

@@ -1,5 +1,6 @@
 """Tables of a body file in TOML. Loads pydantic: import only to read a file."""
 
+from functools import partial
 from typing import Annotated, Any, Literal, Optional
 
 from pydantic import BaseModel, ConfigDict, Field, create_model, model_validator
@@ -69,12 +70,12 @@ class KnownTable(StrictTable):
 class ShapeTable(KnownTable):
     """Depth, density and feet of a 2D shape."""
 
-    depth: Positive | None = Field(None, description="depth, across the motion, default 1 m [unit of the file]")
-    density: Positive | None = Field(None, description="density, default 2400 [kg/m3]")
+    depth: Positive | None = key("depth, across the motion [unit of the file]", usual="1 m")
+    density: Positive | None = key("density [kg/m3]", usual="2400")
     feet: Pair | None = key(
-        "positions of the left and right foot, default: ends of the base [unit of the file]",
+        "positions of the left and right foot [unit of the file]", usual="ends of the base",
         allowed="2 increasing numbers within the base",
-    )
+    )  # fmt: skip
 
 
 class BlockTable(ShapeTable):
@@ -214,7 +215,7 @@ class RestraintTable(StrictTable):
     kind: Literal["tendon", "viscous_damper", "friction_damper", "fuse", "spring"] = Field(
         description="kind of the restraint"
     )
-    name: str | None = key("name in results, default: kind and number", allowed="any text: a label of results")
+    name: str | None = key("name in results", usual="kind and number", allowed="any text: a label of results")
     x: float | None = key(
         "position on the base, x as for the feet [unit of the file]", usual="x, or ground and point, is required",
         allowed="any: also outside the base",
@@ -242,7 +243,7 @@ class RestraintTable(StrictTable):
     stroke: Positive | None = key("fuse: elongation at fracture [unit of the file]", usual="no fracture")
     tension_only: bool | None = key("fuse: true for a bar that buckles without force", usual="false")
     coefficient: Cut | None = key("viscous_damper: coefficient c [N (s/m)^a]", usual="required of a viscous_damper")
-    exponent: Exponent | None = key("viscous_damper: exponent a, default 1 [-]")
+    exponent: Exponent | None = key("viscous_damper: exponent a [-]", usual="1")
     slip_force: Cut | None = key("friction_damper: slip force [N]", usual="required of a friction_damper")
     gap: Cut | None = key("spring: elongation without force [unit of the file]", usual="0")
     action: Literal["both", "tension", "compression"] | None = key("spring: direction of the force", usual="both")
@@ -252,7 +253,7 @@ LENGTHS_OF_RESTRAINTS = ("x", "length", "ground", "point", "free_length", "ruptu
 """Keys of `RestraintTable` in the unit of the file."""
 
 
-_ONE_BODY = "one table of the body is required"
+_body = partial(key, usual="one table of the body is required")
 
 
 class BodyFile(StrictTable):
@@ -261,12 +262,12 @@ class BodyFile(StrictTable):
     units: UnitName = Field(description="unit of all lengths")
     name: str | None = key("name of the body", allowed="any text: a label of results")
     note: str | None = key("free text", allowed="any text: not used in computations")
-    block: BlockTable | None = key("rectangular block", usual=_ONE_BODY)
-    trapezoid: TrapezoidTable | None = key("trapezoid", usual=_ONE_BODY)
-    ellipse: EllipseTable | None = key("ellipse", usual=_ONE_BODY)
-    regular_polygon: RegularPolygonTable | None = key("regular polygon", usual=_ONE_BODY)
-    section: SectionTable | None = key("section of one or more polygons", usual=_ONE_BODY)
-    mass_points: MassPointsTable | None = key("body of mass points", usual=_ONE_BODY)
+    block: BlockTable | None = _body("rectangular block")
+    trapezoid: TrapezoidTable | None = _body("trapezoid")
+    ellipse: EllipseTable | None = _body("ellipse")
+    regular_polygon: RegularPolygonTable | None = _body("regular polygon")
+    section: SectionTable | None = _body("section of one or more polygons")
+    mass_points: MassPointsTable | None = _body("body of mass points")
     restraint: list[RestraintTable] | None = key("restraints, one table per restraint")
 
     @classmethod
@@ -398,21 +399,21 @@ class TurnTable(StrictTable):
     degrees: float = key("rotation angle [degrees]", ..., allowed="any: full turns are allowed")
 
 
-_ONE_SHAPE = "one shape is required"
+_shape = partial(key, usual="one shape is required")
 
 
 class PartTable(StrictTable):
     """A part: exactly one shape of one material, with rotations and a translation."""
 
-    box: BoxTable | None = key("box", usual=_ONE_SHAPE)
-    cylinder: UprightTable | None = key("cylinder", usual=_ONE_SHAPE)
-    cone: UprightTable | None = key("cone", usual=_ONE_SHAPE)
-    frustum: FrustumTable | None = key("frustum of a cone", usual=_ONE_SHAPE)
-    sphere: SphereTable | None = key("sphere, optionally with horizontal cuts", usual=_ONE_SHAPE)
-    ellipsoid: EllipsoidTable | None = key("ellipsoid, optionally with horizontal cuts", usual=_ONE_SHAPE)
-    extrusion: ExtrusionTable | None = key("vertical extrusion of a plan outline", usual=_ONE_SHAPE)
-    revolution: RevolutionTable | None = key("body of revolution about the z axis", usual=_ONE_SHAPE)
-    mesh: MeshTable | None = key("surface mesh from a file", usual=_ONE_SHAPE)
+    box: BoxTable | None = _shape("box")
+    cylinder: UprightTable | None = _shape("cylinder")
+    cone: UprightTable | None = _shape("cone")
+    frustum: FrustumTable | None = _shape("frustum of a cone")
+    sphere: SphereTable | None = _shape("sphere, optionally with horizontal cuts")
+    ellipsoid: EllipsoidTable | None = _shape("ellipsoid, optionally with horizontal cuts")
+    extrusion: ExtrusionTable | None = _shape("vertical extrusion of a plan outline")
+    revolution: RevolutionTable | None = _shape("body of revolution about the z axis")
+    mesh: MeshTable | None = _shape("surface mesh from a file")
     density: Positive | None = key("density of this part [kg/m3]", usual="2400")
     turned: list[TurnTable] | None = key("rotations of the part, in this order", usual="no rotation")
     at: Triple | None = key(
@@ -437,9 +438,9 @@ class SolidTable(StrictTable):
         description="parts, one table [[solid.part]] per part"
     )
     base: Annotated[list[Pair], Field(min_length=3)] | None = key(
-        "points (x, y) of the base, default: all corners on the ground [unit of the file]",
+        "points (x, y) of the base [unit of the file]", usual="all corners on the ground",
         allowed="3 or more points (x, y)",
-    )
+    )  # fmt: skip
     ground: float | None = key(
         "height of the ground [unit of the file]", usual="height of the lowest point",
         allowed="the height of the lowest point of the body",

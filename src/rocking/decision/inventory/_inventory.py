@@ -91,7 +91,7 @@ def inventory(  # noqa: PLR0913 - users set every one of them
     Returns
     -------
     xarray.Dataset
-        Over ``object``, the worst first: light, worse direction, uplift acceleration, interval of the overturning
+        Over ``object``, the worst first: rating, worse direction, uplift acceleration, interval of the overturning
         fraction, and sentences, with the measures that make it green. Over ``restitution``, ``object`` and
         ``direction``: numbers of motions with uplift and with overturning, and rotations. Over ``not_assessed``: rows
         without a verdict, with reasons. Over ``not_object``: other lines. The dataset also contains the units, and the
@@ -108,7 +108,7 @@ def inventory(  # noqa: PLR0913 - users set every one of them
     --------
     >>> import rocking as rk
     >>> ranking = rk.inventory(rk.examples.path("objects"), "point-source", pga="0.3g", count=5)
-    >>> ranking["object"].values[[0, -1]].tolist(), ranking["light"].values[[0, -1]].tolist()
+    >>> ranking["object"].values[[0, -1]].tolist(), ranking["rating"].values[[0, -1]].tolist()
     (['tall clock', 'low stone chest'], ['red', 'green'])
     """
     if map_columns is not None and not isinstance(objects, (str, Path)):
@@ -164,7 +164,7 @@ def dataset_of(assessment: Assessment) -> "xr.Dataset":
 
     meanings = " ".join(f"{light.word}: {sentences[light]}" for light in reversed(Light))
     data: dict[str, Any] = {
-        "light": ("object", [verdict.light.word for verdict in verdicts], {"long_name": meanings}),
+        "rating": ("object", [verdict.light.word for verdict in verdicts], {"long_name": meanings}),
         "worse_direction": ("object", [verdict.worse.direction for verdict in verdicts]),
         "uplift_acceleration": (
             "object", [verdict.uplift_acceleration for verdict in verdicts],
@@ -174,11 +174,11 @@ def dataset_of(assessment: Assessment) -> "xr.Dataset":
             ("object", "end"), np.array([verdict.interval for verdict in verdicts]).reshape(len(verdicts), 2),
             {"units": "1", "long_name": "interval of the overturning fraction in the worse direction"},
         ),
-        "in_words": ("object", [sentence(verdict, assessment) for verdict in verdicts]),
-        "measures": (
+        "text": ("object", [sentence(verdict, assessment) for verdict in verdicts]),
+        "plan": (
             "object", [plan_words(plan[k], say) if (k := id(verdict.item)) in plan else "" for verdict in verdicts]
         ),
-        "what_to_do": ("object", [advice(verdict, assessment) for verdict in verdicts]),
+        "measures": ("object", [advice(verdict, assessment) for verdict in verdicts]),
         **{name: table(name, *about) for name, about in _OF_DIRECTIONS.items()},
         "reason": ("not_assessed", [say(row.reason) for row in assessment.not_assessed]),
         "not_object_reason": ("not_object", [say(row.reason) for row in assessment.not_objects]),

@@ -100,7 +100,7 @@ class Verdict:
         return self.worse.light
 
     @property
-    def model_decides(self) -> bool:
+    def depends_on_model(self) -> bool:
         """True if another restitution model gives another light."""
         return any(result.light is not self.light for result in self.worse_compared)
 

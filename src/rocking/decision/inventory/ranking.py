@@ -19,7 +19,7 @@ from rocking.tables import escaped
 
 _TITLES = {
     "rank": Message("rank"),
-    "light": Message("light"),
+    "rating": Message("rating"),
     "number": Message("inventory number"),
     "name": Message("name"),
     "count": Message("count"),
@@ -33,7 +33,7 @@ _TITLES = {
     "high": Message("overturned, high [%]"),
     "median": Message("median rotation / angle"),
     "quantile": Message("84 % quantile of rotation / angle"),
-    "others": Message("light with other models"),
+    "others": Message("rating with other models"),
     "words": Message("description"),
     "advice": Message("recommendation"),
     "note": Message("note"),
@@ -181,8 +181,8 @@ def rows(assessment: Assessment, code: str = "en") -> list[list[str | float | in
     lines: list[list[str | float | int]] = []
     for rank, verdict in enumerate(assessment.verdicts, start=1):
         worse, item, (low, high) = verdict.worse, verdict.item, verdict.interval
-        lights = zip(assessment.comparisons, verdict.worse_compared, strict=True)
-        others = "; ".join(f"{name}: {say(LIGHT_NAMES[other.light])}" for name, other in lights)
+        lights = lights_by_model(verdict, assessment)[1:]
+        others = "; ".join(f"{name}: {say(LIGHT_NAMES[light])}" for name, light in lights)
         rotations = (
             rotation_words(rotation, say) if rotation is None else round(rotation, 3)
             for rotation in (worse.median_rotation, worse.high_rotation)
@@ -206,7 +206,7 @@ def rows(assessment: Assessment, code: str = "en") -> list[list[str | float | in
 def _bare(refused: NotAssessed, light: str, reason: str) -> list[str | float | int]:
     """Return a row without a verdict."""
     values: dict[str, str | int] = {
-        "light": light, "number": refused.number, "name": refused.name, "row": refused.row, "words": reason,
+        "rating": light, "number": refused.number, "name": refused.name, "row": refused.row, "words": reason,
         "note": refused.note,
     }  # fmt: skip
     cells = [values.get(name, "") for name in COLUMNS]
@@ -296,7 +296,7 @@ def answer_of(assessment: Assessment) -> Answer:
                 "pgv_range": [low, high],
             },
             "restitution": assessment.restitution,
-            "restitution_drawn": assessment.drawn,
+            "restitution_sampled": assessment.drawn,
             "comparisons": list(assessment.comparisons),
             "language": assessment.language,
             "thresholds": dict(vars(thresholds))
@@ -342,7 +342,7 @@ def _plan(entry: PlanEntry, say: Language) -> dict[str, Any]:
         "anchors_of_one_edge": entry.force,
         "anchors_across_over_weight": entry.shear,
         "moved_to_fraction_of_shaking": entry.weaker,
-        "in_words": plan_words(entry, say),
+        "text": plan_words(entry, say),
     }
 
 
@@ -360,7 +360,7 @@ def _plain(rank: int, verdict: Verdict, assessment: Assessment) -> dict[str, Any
         "approximate": dict(item.approximate),
         "remarks": list(map(words_of(assessment), item.remarks)),
         "noted": noted(verdict, assessment),
-        "light": verdict.light.word,
+        "rating": verdict.light.word,
         "worse_direction": verdict.worse.direction,
         "uplift_acceleration": verdict.uplift_acceleration,
         "overturned_interval": list(verdict.interval),
@@ -370,10 +370,10 @@ def _plain(rank: int, verdict: Verdict, assessment: Assessment) -> dict[str, Any
             name: [_direction(result) for result in results]
             for name, results in zip(assessment.comparisons, verdict.compared, strict=True)
         },
-        "light_by_comparison": _lights(verdict, assessment),
-        "model_decides": verdict.model_decides,
-        "in_words": sentence(verdict, assessment),
-        "what_to_do": advice(verdict, assessment),
+        "rating_by_comparison": {name: light.word for name, light in lights_by_model(verdict, assessment)[1:]},
+        "depends_on_model": verdict.depends_on_model,
+        "text": sentence(verdict, assessment),
+        "measures": advice(verdict, assessment),
         "model_note": model_note(verdict, assessment),
     }
 
@@ -390,11 +390,11 @@ _PLAIN = {
 
 def _direction(result: DirectionResult) -> dict[str, Any]:
     names = (
-        "direction", "light", "uplift_acceleration", "count", "lifted", "overturned", "slid", "failed", "lost_contact",
+        "direction", "uplift_acceleration", "count", "lifted", "overturned", "slid", "failed", "lost_contact",
         "overturned_fraction", "median_rotation", "high_rotation",
     )  # fmt: skip
     plain = {_PLAIN.get(name, name): getattr(result, name) for name in names}
-    return plain | {"light": result.light.word}
+    return plain | {"rating": result.light.word}
 
 
 def words_of(assessment: Assessment) -> Language:
@@ -493,9 +493,10 @@ def advice(verdict: Verdict, assessment: Assessment) -> str:
     return f"{measure} {say(room if light is Light.AMBER else away)}"
 
 
-def _lights(verdict: Verdict, assessment: Assessment) -> dict[str, str]:
-    pairs = zip(assessment.comparisons, verdict.worse_compared, strict=True)
-    return {name: result.light.word for name, result in pairs}
+def lights_by_model(verdict: Verdict, assessment: Assessment) -> list[tuple[str, Light]]:
+    """Return the light of an object with each restitution model, the model of the result first."""
+    names, results = (assessment.restitution, *assessment.comparisons), (verdict.worse, *verdict.worse_compared)
+    return [(name, result.light) for name, result in zip(names, results, strict=True)]
 
 
 def model_note(verdict: Verdict, assessment: Assessment) -> str:

@@ -28,7 +28,7 @@ class MeasurementTable(JobTable):
     unit: str | None = key(
         "unit of the column, for a table without unit", usual="unit in the header", allowed="a unit of the kind"
     )
-    time_column: str | None = key("name of the column of times, default: time", allowed="a name in the header")
+    time_column: str | None = key("name of the column of times", usual="time", allowed="a name in the header")
     time_unit: str | None = key(
         "unit of the times, s or ms, for a table without unit", usual="unit in the header", allowed="s, ms"
     )
@@ -37,9 +37,9 @@ class MeasurementTable(JobTable):
         usual="required for displacement or acceleration",
     )
     region: list[float] | None = key(
-        "video: region of the body at rest as left, top, width, height, default: detected from the movement [pixels]",
+        "video: region of the body at rest as left, top, width, height [pixels]", usual="detected from the movement",
         allowed="4 numbers within the picture",
-    )
+    )  # fmt: skip
     frame_rate: Positive | None = key(
         "frame rate of the camera, for a video in slow motion [1/s]", usual="frame rate of the file"
     )
@@ -49,20 +49,20 @@ class IdentifyTable(JobTable):
     """Standard deviations and options of an identification."""
 
     size_error: float | None = key(
-        "relative standard deviation of the body dimensions, default 0.01 [-]", None, ge=0.0, le=0.2
+        "relative standard deviation of the body dimensions [-]", None, usual="0.01", ge=0.0, le=0.2
     )
     tilt: float | list[float] | None = key(
-        "standard deviation of the floor tilt, or [tilt, deviation], positive clockwise, default 0.0052 [rad]",
+        "standard deviation of the floor tilt, or [tilt, deviation], positive clockwise [rad]", usual="0.0052",
         allowed="tilt >= -0.1, <= 0.1; deviation >= 0, <= 0.1",
-    )
+    )  # fmt: skip
     asymmetry: float | None = key(
-        "standard deviation of ln r on the right minus ln r on the left, default 0.06 [-]", None, ge=0.0, le=1.0
+        "standard deviation of ln r on the right minus ln r on the left [-]", None, usual="0.06", ge=0.0, le=1.0
     )
     trend: bool | None = key("fit of a linear change of r with the impact velocity", usual="false")
     damping: bool | None = key("fit of a damping between impacts", usual="false")
     clock: float | list[float] | None = key(
-        "with a motion: standard deviation of the time offset between both clocks, or [offset, deviation], "
-        "default 0.02 [s]", allowed="any offset; deviation >= 0, <= 10",
+        "with a motion: standard deviation of the time offset between both clocks, or [offset, deviation] [s]",
+        usual="0.02", allowed="any offset; deviation >= 0, <= 10",
     )  # fmt: skip
     first: Literal["left", "right"] | None = key("times: contact foot after the first impact", usual="right")
 

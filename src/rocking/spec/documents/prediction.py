@@ -14,42 +14,42 @@ class PredictTable(JobTable):
     """Uncertain inputs of a body: a number, [low, high], a sample of three or more numbers, or a distribution."""
 
     restitution: Any = key(
-        'coefficient of restitution, model, "complementarity", or "measured" (default) [-]', usual="measured",
+        'coefficient of restitution, model, "complementarity", or "measured" [-]', usual="measured",
         allowed="numbers in [0, 10], or a name from `rocking models`",
     )  # fmt: skip
-    friction: Any = key("coefficient of friction, default [0.3, 0.8] [-]", allowed=">= 0.01, <= 10")
+    friction: Any = key("coefficient of friction [-]", usual="[0.3, 0.8]", allowed=">= 0.01, <= 10")
     base: Any = key(
-        "distance of the feet from the edges of the base, default 0 to 2 % of the base width [m]",
+        "distance of the feet from the edges of the base [m]", usual="0 to 2 % of the base width",
         allowed=">= 0, <= 0.9 x half width; of a 3D body >= -0.25 x width, <= 0.5 x height",
-    )
+    )  # fmt: skip
     centre: Any = key(
-        "scale factor of the height of the centre of mass, default [0.97, 1.03] [-]", allowed=">= 0.5, <= 1.5"
+        "scale factor of the height of the centre of mass [-]", usual="[0.97, 1.03]", allowed=">= 0.5, <= 1.5"
     )
     offset: Any = key(
-        "horizontal offset of the centre of mass, default up to 3 % of the half size of the body [m]",
+        "horizontal offset of the centre of mass [m]", usual="up to 3 % of the half size of the body",
         allowed=">= -0.9 x half width, <= 0.9 x half width; of a 3D body up to its half size",
-    )
+    )  # fmt: skip
     level: Any = key(
-        'slope of the support [rad], or "floor" (default), "shelf", "pedestal", "road"', usual="floor", unit="rad",
+        'slope of the support [rad], or "floor", "shelf", "pedestal", "road"', usual="floor", unit="rad",
         allowed=">= -0.5, <= 0.5, or a name",
     )  # fmt: skip
     polarity: Any = key(
-        "polarity: 1 as recorded, -1 reversed, default both with equal probability",
+        "polarity: 1 as recorded, -1 reversed", usual="both with equal probability",
         allowed="1, -1, or a sample of both",
-    )
+    )  # fmt: skip
     azimuth: Any = key(
-        "azimuth of the body to the x component (3D or two components), where its direction is known; "
-        "default: unknown, sampled over all directions [rad]", allowed=">= -2 pi, <= 2 pi",
+        "azimuth of the body to the x component (3D or two components), where its direction is known [rad]",
+        usual="unknown, sampled over all directions", allowed=">= -2 pi, <= 2 pi",
     )  # fmt: skip
     axis: Annotated[list[float], Field(min_length=3, max_length=3)] | None = key(
         "direction of the x component of the motion in the axes of the scan file, instead of azimuth",
         usual="azimuth in its place",
     )
     model_error: Any = key(
-        'factors on uplift acceleration and energy barrier: class of the body, "machined" (default of blocks), '
-        '"object" (default of other plane bodies), "natural" (default of scans), "off", a file of '
-        "validate-predictions --update, or a table with mean and covariance of ln of both factors [-]",
-        usual="class of the body", allowed="a class, off, an existing file, or a table",
+        'factors on uplift acceleration and energy barrier: class of the body "machined", "object" or "natural", '
+        '"off", a file of validate-predictions --update, or a table with mean and covariance of ln of both factors [-]',
+        usual="machined for blocks, object for other plane bodies, natural for scans",
+        allowed="a class, off, an existing file, or a table",
     )  # fmt: skip
     sliding_beyond: Positive = key("smallest sliding distance that counts as sliding [m]", 0.01)
     pga: Text | None = key(
@@ -104,13 +104,13 @@ class AssessTable(JobTable):
     """Options of an assessment and of its report."""
 
     restitutions: list[Any] | None = key(
-        "restitution models and coefficients to compare, default: all models",
+        "restitution models and coefficients to compare", usual="all models",
         allowed="names from `rocking models`, or numbers in [0, 10]",
-    )
+    )  # fmt: skip
     margin: Positive = key("required margin: scale factor of the motions for the retrofit measures [-]", 1.0)
     project: Text | None = key("name of the project", usual="not printed", allowed=_LABEL)
     author: Text | None = key("author of the report", usual="not printed", allowed=_LABEL)
-    date: Text | None = key("date of the report, default: today", allowed=_LABEL)
+    date: Text | None = key("date of the report", usual="today", allowed=_LABEL)
 
 
 class AssessmentDocument(PredictionDocument):

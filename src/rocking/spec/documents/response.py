@@ -35,7 +35,8 @@ class ResponseTable(JobTable):
     assumed_friction: float = Field(
         gt=0.0,
         default_factory=lambda: DEFAULT_FRICTION,
-        description="coefficient of friction for the sliding check of simulations without sliding, default 0.5 [-]",
+        description="coefficient of friction for the sliding check of simulations without sliding [-]",
+        json_schema_extra={"usual": f"{DEFAULT_FRICTION:g}"},
     )
 
     @field_validator("initial_rotation")

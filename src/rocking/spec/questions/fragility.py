@@ -79,7 +79,7 @@ class FragilityTable(JobTable):
     tolerance: float | None = key(
         "relative width of the last intervals: width / level [-]", None, usual="1e-8", ge=0.0, le=0.1
     )
-    scale: Positive | None = key("scale factor of all motions of a cloud analysis [-]", usual="1")
+    scale: Positive | None = key("cloud analysis: scale factor [-]", usual="1")
 
 
 class AnalysisQuestion(BodyQuestion):

@@ -51,7 +51,7 @@ class InventoryTable(JobTable):
         allowed="an existing file",
     )  # fmt: skip
     encoding: Text | None = key(
-        "encoding of a CSV file, such as cp1252, default: detected from the file", allowed="a codec of Python"
+        "encoding of a CSV file, such as cp1252", usual="detected from the file", allowed="a codec of Python"
     )
     map_columns: Text | dict[str, str] | None = key(
         'meaning of columns by title: "Objekt=name, Maß B=width_cm, Rahmenbreite=". An empty meaning ignores the '
@@ -67,7 +67,7 @@ class InventoryTable(JobTable):
         unit="stated with the number", allowed="a number > 0 with unit",
     )  # fmt: skip
     language: Text | None = key(
-        "language of the report: en, de, it, zh, default: language of the header of the list", allowed="en, de, it, zh"
+        "language of the report: en, de, it, zh", usual="language of the header of the list", allowed="en, de, it, zh"
     )
     thresholds: ThresholdsTable = Field(
         default_factory=ThresholdsTable,

@@ -49,8 +49,8 @@ class BifurcationTable(HarmonicTable):
     )
     values: Numbers = Field(
         default_factory=lambda: Values.model_validate({"from": 0.2, "to": 4.0, "count": 191}),
-        description="increasing values of the axis; default: 0.2 to 4",
-        json_schema_extra={"allowed": "increasing numbers > 0"},
+        description="increasing values of the axis",
+        json_schema_extra={"usual": "0.2 to 4", "allowed": "increasing numbers > 0"},
     )
     starts: int = key("number of initial states: at rest, then random after an impact", 4, ge=1, le=10_000)
     sweeps: Annotated[list[Sweep], Field(min_length=1, max_length=3), BeforeValidator(_words)] = key(
@@ -93,8 +93,8 @@ class BasinsTable(LongRunTable):
 
     amplitudes: Numbers = Field(
         default_factory=lambda: Values(values=[1.5]),
-        description="peak ground acceleration / uplift acceleration; default: 1.5 [-]",
-        json_schema_extra={"allowed": "numbers > 0"},
+        description="peak ground acceleration / uplift acceleration [-]",
+        json_schema_extra={"usual": "1.5", "allowed": "numbers > 0"},
     )
     frequency: Positive = key("circular frequency of the ground motion over p [-]", 3.0)
     phases: int = key("number of phases of the ground motion at the impact", 100, ge=1, le=20_000)

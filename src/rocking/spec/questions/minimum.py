@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 class MinimumTable(JobTable):
     """Range and precision of the search for accelerations at which a body begins or ceases to overturn."""
 
-    min_pga: Positive | None = key("smallest PGA, default: uplift acceleration [m/s2]")
-    max_pga: Positive | None = key("largest PGA, default: 50 x uplift acceleration [m/s2]")
+    min_pga: Positive | None = key("smallest PGA [m/s2]", usual="uplift acceleration")
+    max_pga: Positive | None = key("largest PGA [m/s2]", usual="50 x uplift acceleration")
     samples: int = key("number of initial samples, with a constant ratio", 400, ge=2, le=1_000_000)
     bisections: int = key("number of bisections of intervals that may contain a further change", 4, ge=0, le=12)
     tolerance: float = key("relative width of the last intervals: width / acceleration [-]", 1e-12, ge=0.0, le=0.1)

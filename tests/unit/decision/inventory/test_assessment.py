@@ -157,7 +157,7 @@ def test_model_of_impact_is_flagged(quakes):
     found = assess(items, quakes, restitution=1.0)
     assert found.comparisons == ("housner",)
     assert sum(v.worse.overturned for v in found.verdicts) > sum(v.worse_compared[0].overturned for v in found.verdicts)
-    flagged = [each for each in found.verdicts if each.model_decides]
+    flagged = [each for each in found.verdicts if each.depends_on_model]
     assert flagged
     for verdict in found.verdicts:
         note = ranking.model_note(verdict, found)
@@ -249,7 +249,7 @@ def test_table_and_plain_values_agree(quakes):
         assert int(line["overturned"]) == worse["overturned"]
         assert float(line["overturned, high [%]"]) == pytest.approx(100.0 * item["overturned_interval"][1], abs=0.005)
         assert float(line["uplift acceleration [g]"]) == pytest.approx(item["uplift_acceleration"] / G, abs=5e-5)
-        assert line["description"] == item["in_words"]
+        assert line["description"] == item["text"]
     assert lines[2]["description"].startswith("not assessed: width_cm is '?'")
     assert plain["counts"] == {"red": 1, "amber": 0, "green": 1, "not_assessed": 1}
     assert plain["hazard"]["number_of_motions"] == 60

@@ -123,13 +123,17 @@ const label = ({ number, name }) => [...new Set([number, name])].filter(Boolean)
 /** @param {string[]} ends */
 const between = ([low, high]) => t("{low} to {high}", { low, high });
 
+/** Ratings with the other restitution models. @param {{ rating_by_comparison: Words }} object */
+const byModel = (object) => Object.entries(object.rating_by_comparison)
+  .map(([model, rating]) => `${model} ${t(rating.toUpperCase())}`).join(", ");
+
 /** @param {Given} given */
 const Ranking = ({ answer }) => {
-    const missing = answer.not_assessed.length;
+  const missing = answer.not_assessed.length;
   const noted = answer.objects.some((/** @type {any} */ object) => object.note || object.noted);
   const rows = answer.objects.map((/** @type {any} */ object) => [
-    [`${label(object)}${object.count > 1 ? ` (${object.count})` : ""}`, "own"], [object.light.toUpperCase(), LIGHTS[object.light]],
-    between(object.overturned_interval.map((/** @type {number} */ end) => number(100 * end, 2))), object.in_words, object.what_to_do,
+    [`${label(object)}${object.count > 1 ? ` (${object.count})` : ""}`, "own"], [object.rating.toUpperCase(), LIGHTS[object.rating]], byModel(object),
+    between(object.overturned_interval.map((/** @type {number} */ end) => number(100 * end, 2))), object.text, object.measures,
     ...(noted ? [[[object.note, object.noted].filter(Boolean).join(". "), "own"]] : []),
   ]);
   return html`
@@ -137,7 +141,7 @@ const Ranking = ({ answer }) => {
       ? t("{red} red, {amber} amber, {green} green, {missing} not assessed, at {level}.", { ...answer.counts, missing, level: answer.hazard.level })
       : t("{red} red, {amber} amber, {green} green, at {level}.", { ...answer.counts, level: answer.hazard.level })}</p>
     ${rows.length > 0 && html`<${Rows} caption="Objects, highest risk first"
-      head=${["object", "rating", "overturns [%]", "result", "recommendation", ...(noted ? ["note"] : [])]} rows=${rows} />`}
+      head=${["object", "rating", "rating with other models", "overturns [%]", "result", "recommendation", ...(noted ? ["note"] : [])]} rows=${rows} />`}
     ${missing > 0 && html`<h3>Not assessed</h3><${Rows} caption="Rows without a rating" head=${["object", "line", "reason"]}
       rows=${answer.not_assessed.map((/** @type {any} */ row) => [label(row) ? [label(row), "own"] : "no name", String(row.row), row.reason])} />`}
     ${answer.not_objects.length > 0 && html`<details><summary>Lines that are not objects</summary>
