@@ -336,6 +336,30 @@ def located(name: str, kind: Literal["table", "file", "step"] = "table", number:
         raise
 
 
+def reason_of(error: Exception) -> str:
+    """Return the reason of an error of the operating system.
+
+    Parameters
+    ----------
+    error : Exception
+        The error.
+
+    Returns
+    -------
+    str
+        The reason; the wording for a missing file is that of all readers.
+
+    Examples
+    --------
+    >>> (
+    ...     reason_of(FileNotFoundError(2, "No such file or directory")),
+    ...     reason_of(PermissionError(13, "Permission denied")),
+    ... )
+    ('no such file', 'Permission denied')
+    """
+    return "no such file" if isinstance(error, FileNotFoundError) else str(getattr(error, "strerror", None) or error)
+
+
 class InvalidValueError(RockingError, ValueError):
     """A number or a word is outside its allowed range."""
 

@@ -26,7 +26,7 @@ def main(arguments: Sequence[str] | None = None, unnamed_file: str = "") -> None
     from rocking.cli.application import SUBCOMMANDS, application
     from rocking.cli.help import Output
     from rocking.cli.spelling import help_hint, no_command, spelled, with_help
-    from rocking.errors import RockingError, SlowEngineWarning
+    from rocking.errors import RockingError, SlowEngineWarning, reason_of
 
     click_exception: Any = BadParameter.__mro__[2]  # the module of click depends on the version of typer
     arguments = sys.argv[1:] if arguments is None else list(arguments)
@@ -46,9 +46,8 @@ def main(arguments: Sequence[str] | None = None, unnamed_file: str = "") -> None
         refusal = _refusal(error)
         refusal.add_hint(help_hint(getattr(error, "ctx", None)))
     except OSError as error:
-        refusal = RockingError(
-            "{fault}: {file}" if error.filename else "{fault}", fault=error.strerror or str(error), file=error.filename
-        )
+        refusal = RockingError(reason_of(error))
+        refusal = refusal.at(str(error.filename)) if error.filename else refusal
     except KeyboardInterrupt:
         print("rocking: interrupted", file=sys.stderr)
         sys.exit(130)

@@ -4,7 +4,14 @@ from contextvars import ContextVar
 
 import typer
 
-from rocking.errors import InvalidValueError, RockingError
+from rocking.errors import (
+    BodyFileError,
+    InvalidValueError,
+    MeasurementError,
+    RecordError,
+    RockingError,
+    UnknownModelError,
+)
 from rocking.messages import Fact, Message, Option, Parameter, Spelling
 
 
@@ -12,6 +19,7 @@ class UsageError(InvalidValueError):
     """The arguments of a command are invalid; the message ends with a reference to the help of the command."""
 
 
+_OF_ARGUMENTS = (InvalidValueError, UnknownModelError, BodyFileError, RecordError, MeasurementError)
 _RUNNING: ContextVar[typer.Context | None] = ContextVar("the command that runs", default=None)
 _KEYS = {"restitution.model": "restitution"}  # keys of options with another name
 
@@ -27,7 +35,7 @@ def spelled(message: Message | RockingError | str) -> str:
     if context is None:
         return str(message)
     if isinstance(message, RockingError):
-        return message.spelt(spelling(context), within=False)
+        return message.spelt(spelling(context), within=False).replace(".; ", "; ")
     return message.spelt(spelling(context)) if isinstance(message, Message) else message
 
 
@@ -38,8 +46,8 @@ def help_hint(context: typer.Context | None = None) -> Message:
 
 
 def with_help(error: RockingError) -> RockingError:
-    """Return an error, with a reference to the help of the running command if an argument is invalid."""
-    if isinstance(error, UsageError) or str(error.parameter or "").startswith("--"):
+    """Return an error, with a reference to the help of the running command unless a file has the invalid value."""
+    if isinstance(error, _OF_ARGUMENTS) and not any(location.kind == "file" for location in error.places):
         error.add_hint(help_hint())
     return error
 

@@ -19,7 +19,7 @@ from rocking.bodies.block import Block
 from rocking.bodies.formats.schema import BlockSides, Positive
 from rocking.bodies.formats.words import from_pydantic
 from rocking.conventions import NORMAL_95
-from rocking.errors import InvalidValueError, MeasurementError, located
+from rocking.errors import InvalidValueError, MeasurementError, located, reason_of
 from rocking.evidence.measurements import DataSet, interface_of, joined
 from rocking.messages import Range
 
@@ -209,9 +209,7 @@ def rows_in(path: Path) -> list[Measurement]:
     try:
         data = path.read_bytes()
     except (OSError, ValueError) as error:
-        raise MeasurementError(
-            "the file cannot be read ({reason})", reason=getattr(error, "strerror", None) or str(error)
-        ).at(str(path)) from error
+        raise MeasurementError("the file cannot be read ({reason})", reason=reason_of(error)).at(str(path)) from error
     if len(data) > _LARGEST:
         raise MeasurementError(
             "the file has {size:.1f} MiB; files of measurements may have up to 16 MiB", size=len(data) / 2**20

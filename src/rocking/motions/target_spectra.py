@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from rocking import checks
 from rocking.conventions import ACCELERATION_UNITS, FloatArray
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, reason_of
 
 # EN 1998-1:2004, Tables 3.2 and 3.3: S [-], TB, TC, TD [s] by type and ground
 GROUNDS = {
@@ -113,9 +113,7 @@ def in_file(path: Path, damping: float = 0.05) -> TargetSpectrum:
     try:
         lines = path.read_text("utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
-        raise InvalidValueError(
-            "the file cannot be read ({reason})", reason=getattr(error, "strerror", None) or str(error)
-        ).at(str(path)) from error
+        raise InvalidValueError("the file cannot be read ({reason})", reason=reason_of(error)).at(str(path)) from error
     mark = next((mark for mark in ";\t," if mark in "".join(lines[:1])), ",")
     head, *rows = [row for row in csv.reader(lines, delimiter=mark) if any(row)] or [[]]
     unit = _UNIT.search(head[1].strip()) if len(head) > 1 else None

@@ -53,7 +53,7 @@ def model_in_file(word: str, path: Path | None = None) -> RestitutionModel:
     try:
         source = file.read_text(encoding="utf-8-sig")
     except FileNotFoundError as error:
-        raise UnknownModelError("no file {file}", file=str(file)) from error
+        raise UnknownModelError("no such file").at(str(file)) from error
     except (OSError, ValueError) as error:
         raise UnknownModelError("{file} cannot be read: {reason}", file=str(file), reason=str(error)) from error
     eta, _, name, parameters = match.groups("") if match else ("", "", "", "")

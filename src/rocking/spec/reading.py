@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, reason_of
 from rocking.spec.schema import migrated
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ class InputFiles:
         except (OSError, ValueError) as error:
             raise InvalidValueError(
                 "{name}: {fault}. File names are relative to the folder of the job file, {folder}.", name=name,
-                fault=str(getattr(error, "strerror", None) or error), folder=self.folder,
+                fault=reason_of(error), folder=self.folder,
             ) from error  # fmt: skip
         self.files[name] = {"path": name, "sha256": digest.hexdigest(), "bytes": size}
         return path
@@ -106,7 +106,7 @@ def read_text(path: Path) -> str:
             )
         data = path.read_bytes()
     except FileNotFoundError as error:
-        raise InvalidValueError("The job file does not exist.").at(str(path)) from error
+        raise InvalidValueError("no such file").at(str(path)) from error
     except (OSError, ValueError) as error:
         raise InvalidValueError(
             "The file cannot be opened ({reason}).", reason=str(getattr(error, "strerror", None) or error)

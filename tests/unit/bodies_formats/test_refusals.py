@@ -214,7 +214,7 @@ def test_read_body(tmp_path):
             {"units": "m", "ground": -1.0},
             "e.json: the lowest point of the body, y = 0 m, is above the ground",
         ),
-        ("f.toml", {}, "f.toml: The file does not exist"),
+        ("f.toml", {}, "f.toml: no such file"),
         ("g.txt", {}, "g.txt: Unsupported file. Use .toml, .wkt"),
     ):
         with pytest.raises(RockingError) as caught:

@@ -253,7 +253,7 @@ def test_what_is_no_file(tmp_path):
         (tmp_path / name).write_text("POLYGON ((0 0, 1 0, 1 1, 0 0))")
         with pytest.raises(BodyFileError, match=words):
             read_body(tmp_path / name, units="m", **option)
-    with pytest.raises(BodyFileError, match="does not exist"):
+    with pytest.raises(BodyFileError, match="no such file"):
         read_body("none.stl", units="m")
     with pytest.raises(InvalidValueError, match="density must be"):
         read_body("none.stl", units="m", density=math.nan)

@@ -166,6 +166,14 @@ def test_verdict_says_whether_the_model_decides(client):
     assert alone["sentence"].startswith("The body ")
 
 
+def test_headline_states_whether_the_input_states_the_model(client):
+    """The default model has its reason; the same model in the request is stated."""
+    default = asked(client, restitution={"models": ["calibrated", "ked", "housner"]})["verdict"]["headline"]
+    stated = asked(client, restitution={"models": ["calibrated"]})["verdict"]["headline"]
+    assert "calibrated. It is the default" in default
+    assert stated.endswith("calibrated, as stated in the input.")
+
+
 def test_a_restitution_that_creates_energy_has_an_error_of_its_own(client):
     """Where one choice has no response, the others still answer; where none has, the question is refused."""
     found = asked(client, restitution={"models": ["ked"], "values": [1.2]})["answers"]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypedDict, TypeVar
 
 from rocking.checks import number_hint
 from rocking.conventions import LENGTH_UNITS
-from rocking.errors import BodyFileError, InvalidValueError, RockingError
+from rocking.errors import BodyFileError, InvalidValueError, RockingError, reason_of
 from rocking.messages import Message, Option, Place, Range
 
 if TYPE_CHECKING:
@@ -170,9 +170,9 @@ def checked_file(path: Path, limit: int = LARGEST_FILE) -> Path:
     try:
         is_file, size = path.is_file(), path.stat().st_size
     except FileNotFoundError as error:
-        raise BodyFileError("The file does not exist.") from error
+        raise BodyFileError("no such file") from error
     except (OSError, ValueError) as error:  # ValueError is raised for a NUL in the name
-        raise BodyFileError("The file cannot be opened ({reason}).", reason=_reason(error)) from error
+        raise BodyFileError("The file cannot be opened ({reason}).", reason=reason_of(error)) from error
     if not is_file:
         raise BodyFileError("This is not a file.")
     if size > limit:
@@ -189,7 +189,7 @@ def read_text(path: Path, limit: int = LARGEST_FILE) -> str:
     except UnicodeDecodeError as error:
         raise BodyFileError("The file is not UTF-8 text (byte {byte}).", byte=error.start) from error
     except OSError as error:
-        raise BodyFileError("The file cannot be opened ({reason}).", reason=_reason(error)) from error
+        raise BodyFileError("The file cannot be opened ({reason}).", reason=reason_of(error)) from error
 
 
 def check_count(vertices: int) -> None:
@@ -199,7 +199,3 @@ def check_count(vertices: int) -> None:
             "The body has {count} vertices; at most {limit} are allowed", count=vertices, limit=MOST_VERTICES,
             hint="simplify the outline",
         )  # fmt: skip
-
-
-def _reason(error: Exception) -> str:
-    return str(getattr(error, "strerror", None) or error)

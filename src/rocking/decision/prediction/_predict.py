@@ -162,6 +162,7 @@ def predict(  # noqa: PLR0913 - each uncertain input is an argument
         else ({}, overturned[:0])
     )
     histories = np.concatenate([results["overturning"], others])
+    quarter = half_count // 2
     beside: dict[str, Chance] = {}
     if restitution is None or (isinstance(restitution, str) and restitution in MEASURED):
         for name in conventions.COMPARED_RESTITUTIONS:
@@ -170,11 +171,14 @@ def predict(  # noqa: PLR0913 - each uncertain input is an argument
             except RockingError:
                 continue  # a model that does not apply to this body is omitted
             other_results = _counted(
-                other_mechanics, points[: half_count // 2, mechanics.widths["restitution"] :], min_sliding, threads,
+                other_mechanics, points[:quarter, mechanics.widths["restitution"] :], min_sliding, threads,
                 None, 0,
             )  # fmt: skip
             if not np.isnan(other_results["overturning"]).all():
                 beside[name] = _chance(_calibrated(other_results["overturning"], mechanics.slope), design.seed)
+    if beside:  # with the same samples
+        of_default = _chance(_calibrated(overturned[:quarter], mechanics.slope), design.seed)
+        beside = {conventions.DEFAULT_RESTITUTION: of_default, **beside}
     return Prediction(
         body=body,
         motions=summaries_of(mechanics.motions),

@@ -37,10 +37,7 @@ _APART = (
     "Of {rocking} pairs of histories with a difference of one part in a million in scale, {pairs} have different "
     "outcomes."
 )
-_COMPARED = (
-    "With another restitution model and {count} of the {total} samples of the other inputs, overturning has "
-    "{probabilities}."
-)
+_COMPARED = "With the same {count} of the {total} samples, overturning has {probabilities}."
 _AT_ENDS = (
     "The probability of overturning is {low} with {input} near {lower:.3g} and {high} with {input} near {higher:.3g}."
 )
@@ -142,8 +139,8 @@ class Prediction(Exported):
     gravity : float
         Acceleration of gravity [m/s2].
     beside : dict of str to Chance
-        Probability of overturning with KED and with Housner's model, for a quarter of the samples of the other inputs;
-        with the default restitution only.
+        Probability of overturning with the default, with KED and with Housner's model, for the same quarter of the
+        samples; with the default restitution only.
     directions : tuple of float
         Probability of overturning in each quarter of the azimuths, if the azimuth was sampled by default [-].
     """
@@ -273,8 +270,9 @@ class Prediction(Exported):
                 for name, item in self.beside.items()
             ]
             first = others[0]
-            for other in others[1:]:
-                first = Message("{first} and {second}", {"first": first, "second": other})
+            for other in others[1:-1]:
+                first = Message("{first}, {second}", {"first": first, "second": other})
+            first = Message("{first} and {second}", {"first": first, "second": others[-1]})
             facts = {"count": self.count // 4, "total": self.count, "probabilities": first}
             sentences.append(Message(_COMPARED, facts))
         sentences.append(self.headline)

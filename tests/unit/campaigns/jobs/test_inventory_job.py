@@ -133,7 +133,7 @@ def test_changed_list_is_refused(job, tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "wanted"),
     [
-        ('objects = "objects.csv"', 'objects = "none.csv"', r"none\.csv: No such file"),
+        ('objects = "objects.csv"', 'objects = "none.csv"', r"none\.csv: no such file"),
         ('pga = "0.3g"', "", "The intensity level is missing"),
         ('pga = "0.3g"', 'pga = "0.3"', r"inventory: PGA must be a number with its unit"),
         ('pga = "0.3g"', 'pga = "0.3g"\npgv = "20cm/s"', "not both"),

@@ -171,7 +171,7 @@ REFUSED = {
                     r"motions\[0\]: Use exactly one of records, pulse, synthetic, got pulse and synthetic"),
     "key of another source": ('seed = 3\npulse =', 'pulse =',
         r"motions\[0\]: seed is not allowed with pulse. Allowed: scale"),
-    "no file": ('records = "a.AT2"', 'pulse = "sine:amplitude=3,period=0.6"', r"motions\[0\]: a\.AT2: No such file"),
+    "no file": ('records = "a.AT2"', 'pulse = "sine:amplitude=3,period=0.6"', r"motions\[0\]: a\.AT2: no such file"),
     "no match": ('records = "*.AT2"', 'pulse = "sine:amplitude=3,period=0.6"',
         r"motions\[0\]: No file in .* matches '\*\.AT2'"),
     "no family": ('synthetic = "hard-ground"\ncount = 3', 'pulse = "sine:amplitude=3,period=0.6"',
@@ -220,7 +220,7 @@ REFUSED = {
         r"accepts one \[\[body\]\], got 2"),
     "body file and size": ('file = "b.toml"\nunits = "m"', 'units = "m"',
         r"body: Key 'height' is not allowed with file; allowed: units"),
-    "no body file": ('file = "b.toml"', 'units = "m"\nwidth = 0.5\nheight = 2.0', r"body: b\.toml: No such file"),
+    "no body file": ('file = "b.toml"', 'units = "m"\nwidth = 0.5\nheight = 2.0', r"body: b\.toml: no such file"),
     "not TOML": ("[campaign", "[campaign]", "Invalid TOML: .*line 1"),
     "twice in TOML": ("width = 1\nwidth = 2", "width = 0.5", "Invalid TOML: .*"),
 }  # fmt: skip
@@ -311,7 +311,7 @@ def test_records_that_are_refused(text, records, words, wanted):
 
 @pytest.mark.parametrize(
     ("data", "wanted"),
-    [(None, "The job file does not exist"), (b"\xff\xfe\x00", "is not UTF-8 text"), (b"", "campaign is missing")],
+    [(None, "no such file"), (b"\xff\xfe\x00", "is not UTF-8 text"), (b"", "campaign is missing")],
 )
 def test_files_that_are_no_jobs(tmp_path, data, wanted):
     """No file, no text, nothing in it."""

@@ -256,11 +256,18 @@ def test_bad_input(given, why):
 
 @pytest.mark.slow
 def test_ked_and_housner_stand_beside_what_was_measured():
-    """Their probabilities are those of the models by themselves; of a model or a coefficient nothing stands beside."""
+    """Their probabilities are those of the models by themselves; that of the default is of the same quarter of samples.
+
+    A stated model or coefficient is compared with no model.
+    """
     motions = [rk.pulses.sine(amplitude, 0.8) for amplitude in (3.0, 3.4, 5.0)]
     found = predict(BLOCK, motions, count=512, contributions=False)
-    assert list(found.beside) == ["ked", "housner"]
-    for name, chance in found.beside.items():
+    assert list(found.beside) == ["calibrated", "ked", "housner"]
+    total, quarter = found.chances["overturning"], found.beside["calibrated"]
+    assert quarter.low <= total.value <= quarter.high
+    assert quarter.high - quarter.low > 1.3 * (total.high - total.low)  # about twice as wide with a quarter of samples
+    for name in ("ked", "housner"):
+        chance = found.beside[name]
         alone = predict(BLOCK, motions, restitution=name, count=512, contributions=False)
         assert alone.beside == {}
         assert chance.low <= alone.chances["overturning"].value <= chance.high
@@ -276,6 +283,7 @@ def test_ked_and_housner_stand_beside_what_was_measured():
         "model_error": "off",
     }  # nothing is left to draw
     fixed = predict(BLOCK, motions, **known, count=16, contributions=False)
-    for name, chance in fixed.beside.items():
+    for name in ("ked", "housner"):
+        chance = fixed.beside[name]
         alone = predict(BLOCK, motions, restitution=name, **known, count=16, contributions=False).chances["overturning"]
         assert chance.per_motion.tolist() == alone.per_motion.tolist()

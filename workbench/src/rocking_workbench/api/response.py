@@ -134,13 +134,19 @@ async def response(request: Request, inputs: ResponseRequest) -> JsonAnswer:
 
 
 def _answer(inputs: ResponseRequest, records: RecordStore) -> Answer:
-    return responses_answer(problem_from(inputs, records), inputs.points, inputs.body.name, inputs.window)
+    is_stated = inputs.restitution != ResponseRequest.model_fields["restitution"].default
+    problem = problem_from(inputs, records)
+    return responses_answer(problem, inputs.points, inputs.body.name, inputs.window, is_stated=is_stated)
 
 
 def responses_answer(
-    problem: ResponseProblem, points: int, name: str | None = None, window: tuple[float, float] | None = None
-) -> Answer:
-    """Return the responses for all restitutions; `window` is the time window of the curves [s]."""
+    problem: ResponseProblem, points: int, name: str | None = None, window: tuple[float, float] | None = None,
+    *, is_stated: bool = False,
+) -> Answer:  # fmt: skip
+    """Return the responses for all restitutions; `window` is the time window of the curves [s].
+
+    `is_stated` is True if the input states the restitution.
+    """
     assert not isinstance(problem.motion, dict)  # motions of the page have one component
     answers = responses_of(problem)
     verdict = ModelAgreement.of(
@@ -155,7 +161,7 @@ def responses_answer(
         ],
         "verdict": {
             "decides": verdict.models_differ, "sentence": verdict.verdict, "doubts": list(verdict.doubts),
-            "headline": headline(next(iter(answers))),
+            "headline": headline(next(iter(answers)), is_stated=is_stated),
         },
         "body": problem.body.answer(problem.settings.gravity) | outline_answer(problem.body) | {"name": name},
         "motion": motion_answer(problem.motion, problem.scale),
