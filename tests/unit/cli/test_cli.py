@@ -155,7 +155,7 @@ def test_with_json_a_refusal_is_data(run):
     code, out, err = run("restitution", "--width", -1, "--height", 4, "--json")
     error = json.loads(err)["error"]
     assert (code, out, error["parameter"]) == (2, "", "body.block.width")
-    assert error["message"] == "--width must be a number > 0 m, got -1"
+    assert error["message"] == "--width must be a number > 0 m, got -1; see rocking restitution --help"
     assert (error["value"], error["allowed"]["low"], error["allowed"]["high"], error["unit"]) == (-1, 0.0, None, "m")
     unknown = json.loads(run("restitution", "--wide", 1, "--json")[2])["error"]
     assert (unknown["parameter"], unknown["message"].split(":")[0]) == ("--wide", "No such option")

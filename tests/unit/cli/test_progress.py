@@ -87,4 +87,4 @@ def test_commands_have_lines(run, monkeypatch, place, words, line):
     code, out, err = run(*words)
     assert (code, out) == (2, "")
     assert f"rocking: {line}, 0 s\n" in err
-    assert json.loads(run(*words, "--json")[2])["error"]["message"] == "enough"
+    assert json.loads(run(*words, "--json")[2])["error"]["message"] == f"enough; see rocking {words[0]} --help"
