@@ -1,6 +1,5 @@
 """The application: gate, endpoints and pages."""
 
-import mimetypes
 import os
 import threading
 from collections.abc import AsyncIterator, Awaitable, Callable
@@ -14,7 +13,6 @@ from pydantic import ValidationError
 from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
 from starlette.middleware import Middleware
-from starlette.responses import FileResponse
 from starlette.staticfiles import StaticFiles
 
 from rocking.bodies.formats.words import from_pydantic
@@ -26,6 +24,7 @@ from rocking_workbench.answers import ERRORS, JsonAnswer, describe_api, error_an
 from rocking_workbench.api import body, contact_bed, impact, info, motion, records, response
 from rocking_workbench.downloads import documents, tables
 from rocking_workbench.errors import kind_of_status
+from rocking_workbench.pages import FILES, PAGES, STATIC, page_answer
 from rocking_workbench.projects import router as projects
 from rocking_workbench.projects.store import ProjectStore
 from rocking_workbench.questions import router as questions
@@ -47,7 +46,6 @@ if TYPE_CHECKING:
 _SAME_AS = {"model_attributes_type": "model_type", "int_parsing": "int_type", "float_parsing": "float_type"}
 _READING = threading.Lock()
 _WORDS = {404: "not found", 405: "the method is not allowed here"}
-STATIC = Path(__file__).parent / "static"
 _MANUALS = (Path(__file__).parent / "manual", Path(__file__).parents[3] / "build" / "manual")  # packaged or built
 _ABOUT = """\
 The same API serves the pages of `rocking serve`, scripts and MATLAB. Numbers are float64 in SI units, with all digits.
@@ -132,6 +130,7 @@ def create_app(settings: ServerSettings) -> FastAPI:
             Middleware(BodyLimits, limits=settings.limits),
         ],
     )
+    app.add_route(f"/{FILES.fingerprint}/{{name:path}}", FILES.respond, include_in_schema=False)
     limits = settings.limits
     store = RecordStore(settings.folder, limits)
     files = RecordStore(settings.folder, limits, "files", forgets=True)  # each run keeps its files
@@ -172,22 +171,12 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
 
 
 def _add_pages(app: FastAPI) -> None:
-    for kind, suffix in (
-        ("text/javascript", ".js"),
-        ("text/javascript", ".mjs"),
-        ("text/css", ".css"),
-        ("image/svg+xml", ".svg"),
-    ):
-        mimetypes.add_type(kind, suffix)  # replaces text/plain of some systems, which browsers reject
-
-    @app.api_route("/api-docs", methods=["GET", "HEAD"], include_in_schema=False)
-    def api_docs() -> FileResponse:
-        return FileResponse(STATIC / "api-docs.html")
-
     @app.api_route("/words/{code}.json", methods=["GET", "HEAD"], include_in_schema=False)
     def words(code: str) -> JsonAnswer:
         return JsonAnswer(page_words(code))
 
+    for address in PAGES:
+        app.add_route(address, page_answer, include_in_schema=False)
     built = next((folder for folder in _MANUALS if (folder / "index.html").exists()), STATIC / "manual")
     app.mount("/manual", StaticFiles(directory=built, html=True), name="manual")
     app.mount("/", StaticFiles(directory=STATIC, html=True), name="pages")

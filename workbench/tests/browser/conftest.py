@@ -173,24 +173,60 @@ def no_projects(request: pytest.FixtureRequest) -> None:
         served.api(f"projects/{project['id']}", method="DELETE")
 
 
+@dataclass
+class Contexts:
+    """Contexts of a signed-in user; a context that is given back is emptied, and keeps the files of the page."""
+
+    browser: Any
+    served: Served
+    cookies: list[Any]
+    free: dict[str, list[Any]] = field(default_factory=dict)
+    lent: list[tuple[str, Any]] = field(default_factory=list)
+
+    def new_page(self, **options: Any) -> Any:
+        """Return a page in a context with these options that no other test uses."""
+        options = {"viewport": WIDE, **options}
+        key = repr(sorted(options.items()))
+        context = self.free[key].pop() if self.free.get(key) else self.browser.new_context(**options)
+        self.lent.append((key, context))
+        context.clear_cookies()
+        context.clear_permissions()
+        context.grant_permissions(["clipboard-read", "clipboard-write"], origin=self.served.url)
+        page = context.new_page()
+        session = context.new_cdp_session(page)
+        session.send("Storage.clearDataForOrigin", {"origin": self.served.url, "storageTypes": "all"})
+        session.detach()
+        context.add_cookies(self.cookies)
+        return page
+
+    def give_back(self) -> None:
+        """Close all pages."""
+        while self.lent:
+            key, context = self.lent.pop()
+            for page in context.pages:
+                page.close()
+            self.free.setdefault(key, []).append(context)
+
+
+@pytest.fixture(scope="session")
+def contexts(browser: Any, served: Served, signed_in: Any) -> Contexts:
+    """Return the contexts of a signed-in user."""
+    return Contexts(browser, served, signed_in["cookies"])
+
+
 @pytest.fixture
-def open_page(browser: Any, served: Served, signed_in: Any, record: Record) -> Iterator[Callable[..., Any]]:
+def open_page(contexts: Contexts, served: Served, record: Record) -> Iterator[Callable[..., Any]]:
     """Open pages of a signed-in user; `open_page(fragment="", view="body", **context options)`."""
-    contexts = []
 
     def opened(fragment: str = "", *, view: str | None = None, **options: Any) -> Any:
-        context = browser.new_context(storage_state=signed_in, **{"viewport": WIDE, **options})
-        context.grant_permissions(["clipboard-read", "clipboard-write"], origin=served.url)
-        contexts.append(context)
-        page = context.new_page()
+        page = contexts.new_page(**options)
         record.watch(page, served.url)
         page.goto(f"{served.url}/#{fragment or (f'view={view}' if view else '')}")
         page.wait_for_selector("main section[data-ready=true]:not([hidden])")
         return page
 
     yield opened
-    for context in contexts:
-        context.close()
+    contexts.give_back()
 
 
 @pytest.fixture

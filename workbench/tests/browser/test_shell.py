@@ -71,16 +71,55 @@ def test_the_recorder_sees_what_it_must_refuse(
 
 
 @pytest.mark.speed
-def test_first_page_under_one_second(open_page: Callable[..., Any]) -> None:
+def test_first_page_under_one_second(browser: Any, served: Any, signed_in: Any) -> None:
     """From an empty cache to the numbers of the first body ; the limit is 1 s at the pace of the machine."""
     seconds: list[float] = []
     for _ in range(3):
         started = time.perf_counter()
-        page = open_page()
+        context = browser.new_context(storage_state=signed_in)
+        page = context.new_page()
+        page.goto(served.url)
         page.get_by_test_id("facts-table").wait_for()
         seconds.append(time.perf_counter() - started)
-        page.context.close()
+        context.close()
     assert min(seconds) < allowed(1.0), seconds
+
+
+LEAVE = """async () => {
+  localStorage.left = sessionStorage.left = document.cookie = "left=1";
+  await new Promise((done) => { indexedDB.open("left").onsuccess = done; });
+  await caches.open("left");
+}"""
+LEFT = """async () => [document.cookie.includes("left"), "left" in localStorage, "left" in sessionStorage,
+  (await indexedDB.databases()).length > 0, await caches.has("left")]"""
+FROM_SERVER = """() => performance.getEntriesByType("resource").filter((file) => /[.](m?js|css)$/.test(file.name))
+  .map((file) => file.transferSize > 0)"""
+
+
+def test_no_test_sees_the_storage_of_another(contexts: Any, served: Any) -> None:
+    """A context given back is lent again without what was stored in it; files of the page come from its cache.
+
+    Control: before the context is given back, all of it is there; the first page has its files from the server.
+    """
+
+    def opened() -> Any:
+        page = contexts.new_page(locale="fr-CH")
+        page.goto(served.url)
+        page.get_by_test_id("facts-table").wait_for()
+        return page
+
+    first = opened()
+    asked = first.evaluate(FROM_SERVER)
+    assert len(asked) > 80
+    assert all(asked)
+    first.evaluate(LEAVE)
+    assert first.evaluate(LEFT) == [True] * 5
+    contexts.give_back()
+    again = opened()
+    assert again.context is first.context
+    assert again.evaluate(LEFT) == [False] * 5
+    assert not any(again.evaluate(FROM_SERVER))
+    contexts.give_back()
 
 
 BEYOND = """() => [

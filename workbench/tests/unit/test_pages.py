@@ -13,12 +13,14 @@ from base64 import b64encode
 from importlib.resources import files
 from pathlib import Path
 
+import httpx
 import pytest
 import uvicorn
 from waiting import HANG
 
 from rocking_workbench import server
 from rocking_workbench.application import create_app
+from rocking_workbench.pages import PageFiles
 from rocking_workbench.server import listen, write_private
 from rocking_workbench.settings import ServerSettings
 
@@ -102,6 +104,50 @@ def test_the_origin_is_that_of_the_server(served):
 
 
 STATIC = Path(str(files("rocking_workbench"))) / "static"
+
+
+def test_addresses_change_with_every_file(tmp_path):
+    """Another content, name or division of the same bytes has another fingerprint; the same files have the same."""
+    made = {}
+    for label, contents in {
+        "first": {"app/a.js": b"ab", "b.css": b"c"},
+        "content": {"app/a.js": b"aB", "b.css": b"c"},
+        "name": {"app/c.js": b"ab", "b.css": b"c"},
+        "division": {"app/a.js": b"abb.css 1 c"},
+        "same": {"app/a.js": b"ab", "b.css": b"c"},
+    }.items():
+        for name, content in contents.items():
+            path = tmp_path / label / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(content)
+        made[label] = PageFiles.read(tmp_path / label)
+        assert made[label].contents == contents
+    assert made["same"].fingerprint == made["first"].fingerprint
+    assert len({files.fingerprint for files in made.values()}) == len(made) - 1
+
+
+@pytest.mark.parametrize("address", ["/", "/index.html", "/api-docs", "/api-docs.html"])
+def test_files_of_a_page_are_kept_by_the_browser(served, address):
+    """All links, scripts and imports of a page lead to its present files; its import map is the one that is allowed."""
+    _, origin = served
+    answer = httpx.get(origin + address)
+    page = answer.text
+    linked = re.findall(r'<(?:link|script)\b[^>]*?(?:href|src)="([^"]+)"', page)
+    (imports,) = re.findall(r'<script type="importmap">(.*?)</script>', page)
+    named = json.loads(imports)["imports"]
+    folders = {f"/{path.relative_to(STATIC).parts[0]}/" for path in STATIC.glob("*/**/*.*js")}
+    assert {name for name in named if name.startswith("/")} == folders
+    targets = [*linked, *(path for path in named.values() if not path.endswith("/"))]
+    assert len(targets) > 8
+    with httpx.Client(base_url=origin) as client:
+        for target in targets:
+            file = client.get(target)
+            assert file.headers["Cache-Control"] == "private, max-age=31536000, immutable", target
+            assert file.content == (STATIC / target.split("/", 2)[2]).read_bytes(), target
+    allowed = b64encode(hashlib.sha256(imports.encode()).digest()).decode()
+    assert f"'sha256-{allowed}'" in answer.headers["Content-Security-Policy"]
+
+
 # a browser's stack ends at about 120,000 arguments of one call
 SPREAD = re.compile(r"(Math\.(?:max|min)|\.push)\((?:[^()]*,\s*)?\.\.\.\w")
 
@@ -139,5 +185,7 @@ def test_the_page_has_one_script_of_its_own(client):
     (words,) = re.findall(r"<script(?! type=\"module\"| src=)[^>]*>(.*?)</script>", page.text, re.DOTALL)
     assert f"'sha256-{b64encode(hashlib.sha256(words.encode()).digest()).decode()}'" in policy
     assert f"'sha256-{b64encode(hashlib.sha256(b'{}').digest()).decode()}'" not in policy
-    for path in json.loads(words)["imports"].values():
+    paths = [path for path in json.loads(words)["imports"].values() if not path.endswith("/")]
+    assert len(paths) == 3
+    for path in paths:
         assert client.get(path).headers["Content-Type"].startswith("text/javascript")

@@ -9,6 +9,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from rocking_workbench.errors import Busy, Refused
+from rocking_workbench.pages import FILES
 from rocking_workbench.security.gate import (
     RequestHead,
     check_content,
@@ -124,6 +125,10 @@ def test_headers_are_on_every_answer(client):
     """Pages, the API, refusals and things that do not exist all carry the same protective headers."""
     for path, status, kept in (
         ("/", 200, "no-cache"),
+        ("/app/main.js", 200, "no-cache"),
+        (f"/{FILES.fingerprint}/app/main.js", 200, "private, max-age=31536000, immutable"),
+        (f"/{FILES.fingerprint}/app/absent.js", 404, "no-cache"),
+        ("/0123456789abcdef/app/main.js", 404, "no-cache"),
         ("/api/session", 200, "no-store"),
         ("/api/nothing", 404, "no-store"),
         ("/%2e", 404, "no-cache"),

@@ -6,7 +6,6 @@ from base64 import b64encode
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from hashlib import sha256
-from pathlib import Path
 from typing import Any
 
 from starlette.datastructures import MutableHeaders
@@ -15,6 +14,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from rocking_workbench.answers import error_answer, refusal
 from rocking_workbench.errors import INTERNAL, NotFound, Refused, kind_of_status
+from rocking_workbench.pages import INLINE
 from rocking_workbench.security.sessions import is_signed_in
 from rocking_workbench.settings import ServerSettings
 
@@ -192,10 +192,8 @@ CHECKS: dict[str, Check] = {
 }
 """Checks in their order."""
 
-_PAGE = (Path(__file__).parents[1] / "static" / "index.html").read_text(encoding="utf-8")
-_IMPORTS = re.findall(r'<script type="importmap">(.*?)</script>', _PAGE, re.DOTALL)
-# hash of the only inline script of the page: the import map
-_KNOWN = [f"'sha256-{b64encode(sha256(script.encode()).digest()).decode()}'" for script in _IMPORTS]
+# hashes of the only inline scripts of the pages: the import maps
+_KNOWN = [f"'sha256-{b64encode(sha256(script.encode()).digest()).decode()}'" for script in INLINE]
 CONTENT_POLICY = "; ".join((
     "default-src 'none'",
     " ".join(("script-src 'self'", *_KNOWN)),
@@ -271,7 +269,8 @@ class SafeHeaders:
                 headers.update(HEADERS)
                 if scope["path"].startswith("/manual/"):
                     headers["Content-Security-Policy"] = MANUAL_POLICY
-                headers["Cache-Control"] = "no-store" if scope["path"].startswith("/api/") else "no-cache"
+                of_api = scope["path"].startswith("/api/")
+                headers.setdefault("Cache-Control", "no-store" if of_api else "no-cache")
                 del headers["Server"]
             await send(message)
 
