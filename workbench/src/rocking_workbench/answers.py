@@ -254,9 +254,10 @@ class ErrorAnswer(BaseModel):
 
 
 ERRORS: dict[int | str, dict[str, Any]] = {
-    status: {"model": ErrorAnswer, "description": description} for status, description in _ERRORS.items()
+    status: {"description": description} for status, description in _ERRORS.items()
 }
-"""Error responses of every endpoint."""
+"""Error responses of every endpoint; `describe_api` adds the other contents."""
+ERRORS[500]["model"] = ErrorAnswer  # of one status only: a model costs each endpoint a validator
 
 
 def describe_api(app: FastAPI) -> None:
