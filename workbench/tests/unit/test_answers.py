@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from starlette.requests import Request
-from web_clients import refusal
+from web_clients import new_application, refusal, script_of
 
 from rocking.errors import (
     BodyFileError,
@@ -232,8 +232,14 @@ REQUESTS = {
 }
 
 
+@pytest.fixture(scope="module")
+def schema(tmp_path_factory):
+    with script_of(new_application(tmp_path_factory.mktemp("schema"))) as script:
+        return script.get("/api/openapi.json").json()
+
+
 @pytest.mark.parametrize("status", REQUESTS)
-def test_errors_are_what_the_schema_says(client, status):
+def test_errors_are_what_the_schema_says(client, schema, status):
     """A real answer of each status has the declared form, and the operation declares that status with that form."""
     method, path, content = REQUESTS[status]
     head = {401: {"Authorization": "Bearer x"}, 403: {"Origin": "http://evil.example"}}.get(status, {})
@@ -244,7 +250,6 @@ def test_errors_are_what_the_schema_says(client, status):
     assert answer.status_code == status
     told = ErrorAnswer.model_validate(answer.json())
     assert told.error.message
-    schema = client.get("/api/openapi.json").json()
     place = next(each for each in schema["paths"] if path.startswith(each.partition("{")[0]) and each.count("/") >= 2)
     for operation in schema["paths"][place].values():
         assert operation["responses"][str(status)] == {"$ref": f"#/components/responses/Error{status}"}
