@@ -194,6 +194,8 @@ _RESTRAINTS = (
     Quantity("smallest_elongation", "m", "smallest elongation of the restraint, negative if shorter"),
     Quantity("yield_count", "1", "number of times the restraint begins to yield", label="yields"),
     Quantity("is_broken", "1", "1 if the restraint is broken at the end, else 0", label="broken"),
+    Quantity("yielded_restraints", "1", "sum of 2^k over the restraints k (from 0) that yielded"),
+    Quantity("broken_restraints", "1", "sum of 2^k over the restraints k (from 0) that are broken at the end"),
     Quantity("plastic_elongation", "m", "plastic elongation at the end"),
     Quantity("residual_force", "N", "force of the restraint at the end in the upright body"),
     Quantity("residual_slack", "m", "elongation from the upright body before a slack restraint has a force"),

@@ -373,7 +373,7 @@ def feet_of(feet: Any) -> Interval:
 
 def assumed_rows(body: Any) -> list[tuple[str, str]]:
     """Return the assumptions about a body as rows (label, text) of a table."""
-    density = assumed_density(body.densities)
+    density = assumed_density(body.densities, affects_rotations=hasattr(body, "restraints"))
     return [*(("density", text) for text in density), *(("assumed", text) for text in body.assumed[len(density) :])]
 
 
@@ -393,11 +393,20 @@ _ASSUMED_DENSITY = {  # keys: (all densities are assumed, the densities are scal
 }
 
 
-def assumed_density(densities: Sequence[float]) -> tuple[str, ...]:
-    """Return the assumptions about densities, as texts."""
+_ASSUMED_WITH_RESTRAINTS = {
+    (True, False): "{density:g} kg/m3 assumed (plain concrete); with restraints it affects rotations",
+    (True, True): (
+        "{density:g} kg/m3 assumed (plain concrete), scaled to {scaled:.6g}; with restraints it affects rotations"
+    ),
+}  # fmt: skip
+
+
+def assumed_density(densities: Sequence[float], *, affects_rotations: bool = False) -> tuple[str, ...]:
+    """Return the assumptions about densities, as texts. With restraints the mass affects the rotations."""
     assumed = [value for value in densities if isinstance(value, Assumed)]
     if not assumed:
         return ()
     facts = {"density": DEFAULT_DENSITY, "parts": len(assumed), "total": len(densities), "scaled": assumed[0]}
     of_all, is_scaled = len(assumed) == len(densities), assumed[0] != DEFAULT_DENSITY
-    return (Message(_ASSUMED_DENSITY[of_all, is_scaled], facts),)
+    texts = _ASSUMED_WITH_RESTRAINTS if affects_rotations and of_all else _ASSUMED_DENSITY
+    return (Message(texts[of_all, is_scaled], facts),)

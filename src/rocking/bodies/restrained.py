@@ -7,10 +7,11 @@ from typing import Any
 
 from rocking import checks, conventions
 from rocking.answers import Answer
-from rocking.bodies.body import Body, Side
+from rocking.bodies.body import Body, Side, assumed_density
 from rocking.bodies.restraints import Restraint
 from rocking.conventions import Foot
 from rocking.errors import InvalidValueError
+from rocking.messages import Message
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,14 @@ class Restrained:
     @property
     def assumed(self) -> tuple[str, ...]:
         """Assumed values of the body, as texts."""
-        return self.body.assumed
+        density = assumed_density(self.densities, affects_rotations=True)
+        texts = (Message("density {assumed}", {"assumed": text}) for text in density)
+        return (*texts, *self.body.assumed[len(density) :])
+
+    @property
+    def densities(self) -> tuple[float, ...]:
+        """Densities of the parts of the body; empty for mass points [kg/m3]."""
+        return self.body.densities
 
     def side(self, foot: Foot, gravity: float = conventions.g) -> Side:
         """Return the parameters of the body for rotation about one foot.

@@ -186,10 +186,11 @@ def _table(arguments: "Arguments") -> tuple[dict[str, Any], str]:
 
 def _states(text: str) -> list[float | str]:
     """Return limit states: rotations / slenderness angle [-], then names."""
-    from rocking.studies.fragility.subject import NAMED
+    from rocking.studies.fragility.subject import NAMED, damage_state
 
     entries = [entry.strip() for entry in text.split(",")]
-    names, numbers = [entry for entry in entries if entry in NAMED], [entry for entry in entries if entry not in NAMED]
+    names = [entry for entry in entries if entry in NAMED or damage_state(entry)]
+    numbers = [entry for entry in entries if entry not in names]
     rotations = row("--limit-states", ",".join(numbers), "1")[0].tolist() if numbers or not names else []
     return [*rotations, *names]
 

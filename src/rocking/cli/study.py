@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rocking.answers import Display
-from rocking.bodies import Body
+from rocking.bodies import PLANE_BODIES
 from rocking.bodies.body import assumed_rows
 from rocking.cli.arguments import NO_MOTION, Arguments, document_file, parsed_sets, with_sets
 from rocking.cli.numbers import SIDE, body_line
@@ -199,17 +199,23 @@ def contact_lines(settings: Settings, *, varied: bool = False) -> list[tuple[str
 def subject_lines(problem: StudyProblem, display: Display, *, varied: bool = False) -> list[tuple[str, str]]:
     """Return the printed lines of the body of a study and of its contact."""
     body, settings = problem.bodies[0], problem.settings
-    answer = body.answer(settings.gravity) if isinstance(body, Body) else body.answer()
+    answer = body.answer(settings.gravity) if isinstance(body, PLANE_BODIES) else body.answer()
     line = body_line(body, answer, display, ("parts", "centre_height", *SIDE))
-    return [("body", line), *assumed_rows(body), *contact_lines(settings, varied=varied)]
+    return [("body", line), *_restraints(body), *assumed_rows(body), *contact_lines(settings, varied=varied)]
+
+
+def _restraints(body: Any) -> list[tuple[str, str]]:
+    """Return the printed line of the restraints of a body; empty without restraints."""
+    names = ", ".join(restraint.name for restraint in getattr(body, "restraints", ()))
+    return [("restraints", names)] if names else []
 
 
 def show_subject(page: Page, problem: StudyProblem, display: Display, motion: str, *, varied: bool = False) -> None:
     """Write body, motion and contact of a study of one body."""
     body, settings = problem.bodies[0], problem.settings
-    answer = body.answer(settings.gravity) if isinstance(body, Body) else body.answer()
+    answer = body.answer(settings.gravity) if isinstance(body, PLANE_BODIES) else body.answer()
     page.line(f"{body_line(body, answer, display)}; {motion}")
-    page.facts(contact_lines(settings, varied=varied))
+    page.facts([*_restraints(body), *contact_lines(settings, varied=varied)])
 
 
 def show_assumed(page: Page, problem: StudyProblem, *, details: bool) -> None:

@@ -7,6 +7,7 @@ from typing import Any
 
 from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw
 from rocking.dynamics.mechanics import mechanics_of
+from rocking.dynamics.mechanics_base import Mechanics
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.dynamics.plane.settings import PlaneSettings
 from rocking.dynamics.rows import RowRunner, Rows, law_of_rows, run_rows
@@ -25,7 +26,7 @@ class Batch:
 
     def __post_init__(self) -> None:
         thread_count(self.threads)
-        mechanics_of(self.settings).check_motions(self.motions)
+        self._mechanics.check_motions(self.motions)
 
     def run(
         self,
@@ -34,10 +35,17 @@ class Batch:
         progress: Callable[[int], None] | None = None,
         threads: int | None = None,
     ) -> tuple[Arrays, dict[str, int]]:
-        """Return arrays by the keys of `fast_engine.RESULTS`, and numbers of steps (empty for the reference engine)."""
-        worker_count = thread_count(self.threads if threads is None else threads)
-        return run_rows(self._runner, self.law, count, rows, worker_count, progress)
+        """Return arrays by the keys of `study_columns`, and numbers of steps (empty for the reference engine)."""
+        worker_count, columns = (
+            thread_count(self.threads if threads is None else threads),
+            self._mechanics.study_columns,
+        )
+        return run_rows(self._runner, self.law, count, rows, worker_count, progress, columns=columns)
+
+    @property
+    def _mechanics(self) -> Mechanics:
+        return mechanics_of(self.settings)
 
     @cached_property
     def _runner(self) -> RowRunner:
-        return mechanics_of(self.settings).rows(self.motions, law_of_rows(self.law), self.settings, self.engine)
+        return self._mechanics.rows(self.motions, law_of_rows(self.law), self.settings, self.engine)

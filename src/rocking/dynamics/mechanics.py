@@ -49,4 +49,4 @@ def mechanics_of(settings: Settings) -> Mechanics:
 def study_settings(body: Any, options: Mapping[str, Any], gravity: float = conventions.g) -> Settings:
     """Return the settings of a study of a plane or 3D body. `options` contains fields of the settings by name."""
     mechanics = mechanics_for(body, options.get("friction"), study=True)
-    return mechanics.split({**options, "gravity": gravity}, mechanics.settings, frozenset())[0]
+    return mechanics.study_settings(body, {**options, "gravity": gravity})

@@ -1,5 +1,6 @@
 """Interface of a mechanics: its bodies and settings, and functions for one history, many histories and studies."""
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -7,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from rocking import checks
+from rocking import checks, portable
 from rocking.bodies import Body
 from rocking.conventions import FloatArray
 from rocking.dynamics.impact_laws import ImpactLaw
@@ -140,6 +141,23 @@ class Mechanics(ABC):
     @abstractmethod
     def follow_many(self, combinations: Combinations, settings: Any) -> "xr.Dataset":
         """Return the results of every combination."""
+
+    def study_settings(self, body: Any, options: Mapping[str, Any]) -> Settings:
+        """Return the settings of a study of a body. Raise an error for unknown options."""
+        return self.split(options, self.settings, frozenset())[0]
+
+    @property
+    def study_columns(self) -> Mapping[str, Any]:
+        """Data types of the results of the rows of a study, by name."""
+        from rocking.dynamics.plane.fast_engine import RESULTS
+
+        return RESULTS
+
+    def uplift_accelerations(self, settings: Settings, sides: Mapping[str, FloatArray]) -> FloatArray:
+        """Return the ground accelerations of uplift about the right and the left foot [m/s2], shape (2, n)."""
+        angles = np.stack([sides["alpha_right"], sides["alpha_left"]])
+        tangents = angles if settings.linear else portable.each(math.tan, angles)
+        return np.asarray(settings.gravity * tangents)  # Eq. 25
 
     def rows(self, motions: Sequence[Any], law: Any, settings: Any, engine: str) -> "RowRunner":
         """Return the object that computes the rows of a study."""

@@ -1,6 +1,6 @@
 """Rows of a study: arrays of bodies, motions, scales and coefficients, computed in pieces."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from rocking.conventions import FEET, FloatArray
 from rocking.dynamics.impact_laws import ConstantRestitution, DrawnRestitution, ImpactLaw
-from rocking.dynamics.plane.fast_engine import Arrays, empty_results
+from rocking.dynamics.plane.fast_engine import RESULTS, Arrays, empty_results
 from rocking.dynamics.settings import check_progress
 from rocking.errors import InvalidValueError
 
@@ -68,7 +68,7 @@ class RowRunner(Protocol):
     """Motions in the form of an engine. `run` computes histories given as rows."""
 
     def run(self, piece: Rows, threads: int) -> tuple[Arrays, dict[str, int]]:
-        """Return columns of results (those of `fast_engine.RESULTS` that the mechanics has), and numbers of steps."""
+        """Return columns of results (those of `study_columns` that the mechanics has), and numbers of steps."""
 
 
 def run_rows(
@@ -78,10 +78,12 @@ def run_rows(
     rows: Callable[[int, int], Rows],
     threads: int,
     progress: Callable[[int], None] | None = None,
+    *,
+    columns: Mapping[str, Any] = RESULTS,
 ) -> tuple[Arrays, dict[str, int]]:
     """Return the results of rows, computed in pieces, and numbers of steps. `law` gives random coefficients."""
     check_progress(progress)
-    results, total = empty_results(count), dict[str, int]()
+    results, total = empty_results(count, columns), dict[str, int]()
     for first in range(0, count, PIECE):
         piece = rows(first, min(first + PIECE, count))
         done, work = runner.run(drawn_rows(piece, law) if law.per_history else piece, threads)

@@ -27,6 +27,7 @@ from rocking.plots.style import (
     stroke,
 )
 from rocking.studies.fragility.incremental_dynamic_analysis import WIDE, IncrementalDynamicAnalysis
+from rocking.studies.fragility.subject import damage_state
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -194,7 +195,7 @@ def _stack(axes: "Axes", analysis: Any) -> None:
     """Draw the fractions of the states as bars that add up to one."""
     levels = np.asarray(analysis.levels)
     trials = np.asarray(analysis.trials, dtype=np.float64)
-    parts = [grouped(levels, np.asarray(counts, dtype=np.float64), trials) for counts in analysis.counts.values()]
+    parts = [grouped(levels, np.asarray(counts, dtype=np.float64), trials) for counts in _ordered(analysis).values()]
     at, _, total = parts[0]
     reached = [np.ones(at.size), *(hits / total for _, hits, _ in parts), np.zeros(at.size)]
     left, width = _widths(at, geometric(levels))
@@ -202,6 +203,11 @@ def _stack(axes: "Axes", analysis: Any) -> None:
         axes.bar(left, more - less, width, bottom=less, align="edge", color=color, edgecolor="white", linewidth=0.4)
     axes.set_ylim(0.0, 1.0)
     axes.set_ylabel("fraction of\nmotions [-]")
+
+
+def _ordered(analysis: Any) -> dict[str, FloatArray]:
+    """Return the counts of the states of the rotation, which are in an order."""
+    return {name: counts for name, counts in analysis.counts.items() if damage_state(name) is None}
 
 
 def _widths(at: FloatArray, ratios: bool) -> tuple[FloatArray, FloatArray]:
@@ -225,9 +231,10 @@ def _legends(upper: "Axes", lower: "Axes", analysis: Any) -> None:
     mark: dict[str, Any] = {"markersize": 3.0, "markerfacecolor": "white"}
     curves = [stroke(symbol(name), marker=MARKS[k % 5], **mark, **look(k)) for k, name in enumerate(names)]
     legend_above(upper, 2, handles=curves, **options)
-    none = "no rocking" if names[0] == "rocking" else f"not {symbol(names[0])}"
-    state_labels = [none, *(f"{symbol(a)}, not worse" for a in names[:-1]), symbol(names[-1])]
-    patches = [patch(color, label) for color, label in zip(state_colors(len(names)), state_labels, strict=True)]
+    ordered = list(_ordered(analysis))
+    none = "no rocking" if ordered[0] == "rocking" else f"not {symbol(ordered[0])}"
+    state_labels = [none, *(f"{symbol(a)}, not worse" for a in ordered[:-1]), symbol(ordered[-1])]
+    patches = [patch(color, label) for color, label in zip(state_colors(len(ordered)), state_labels, strict=True)]
     legend_above(lower, 2, handles=patches, handlelength=1.2, **options)
 
 

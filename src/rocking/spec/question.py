@@ -54,6 +54,7 @@ class StudyQuestion(JobTable):
     without_body: ClassVar[str] = ""  # reason why [body] is not allowed; empty if it is allowed
     plane: ClassVar[bool] = False  # True if the bodies move along x and z only
     one_restitution: ClassVar[bool] = False  # True if a figure shows one restitution
+    with_restraints: ClassVar[bool] = False  # True if the body may have restraints
     needs_motions: ClassVar[bool] = False  # True if all motions are computed before the first history
     names_files: ClassVar[bool] = False  # True if the table contains file names, which browsers do not send
     of_files: ClassVar[dict[str, set[str]]] = {}  # keys that affect only the files of a campaign, by table

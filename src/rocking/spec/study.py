@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rocking.bodies import Body
+from rocking.bodies import PLANE_BODIES, Body
 from rocking.conventions import COMPARED_RESTITUTIONS, FloatArray, g
 from rocking.dynamics.mechanics import mechanics_of, study_settings
 from rocking.dynamics.parameters import sides_of
@@ -49,12 +49,13 @@ class StudyProblem:
                 parameter="motions",
                 hint=document.without_body,
             )
-        bodies = []
+        bodies: list[Any] = []
         for k, table in enumerate(document.bodies):
             with located("body" if len(document.bodies) == 1 else f"body[{k}]"):
-                bodies.append(without_restraints(body_for_motion(table, inputs, in_space=turned)))
+                body = body_for_motion(table, inputs, in_space=turned)
+                bodies.append(body if document.with_restraints else without_restraints(body))
         with located("settings"):
-            kinds = {isinstance(body, Body) for body in bodies}
+            kinds = {isinstance(body, PLANE_BODIES) for body in bodies}
             if len(kinds) > 1:
                 raise InvalidValueError("A study needs only 2D bodies or only 3D bodies.")
             settings = study_settings(next(iter(bodies), None), stated, stated.pop("gravity", g))

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from rocking import checks, plausibility
-from rocking.bodies import Block, Body
+from rocking.bodies import PLANE_BODIES, Block, Restrained
 from rocking.conventions import FEET, FloatArray
 from rocking.dynamics.impact_laws import ConstantRestitution
 from rocking.errors import InvalidValueError
@@ -80,6 +80,8 @@ class Axis:
 
     def check(self, question: Question) -> None:
         """Raise an error for a question without this parameter."""
+        if self.stage == BODY and isinstance(question.body, Restrained):
+            raise InvalidValueError("{name} cannot vary for a body with restraints", name=self.name)
         if self.stage == TIME:
             question.check_stretching(self.name)
         if self.stage in {AMPLITUDE, VELOCITY} and not question.motion.peak > 0.0:
@@ -143,7 +145,7 @@ def _slenderness_ratio(case: Case, values: FloatArray) -> dict[str, Any]:
 
 def _restitution(case: Case, values: FloatArray) -> dict[str, Any]:
     body: Any = case.question.body
-    if not isinstance(body, Body):
+    if not isinstance(body, PLANE_BODIES):
         return {"sides": {**case.sides, "r_right": values, "r_left": values}}
     inertia = [body.side(foot).moment_of_inertia for foot in FEET]
     largest = np.sqrt(min(inertia) / max(inertia)) * (1.0 + 1e-9)  # Eq. 29
@@ -192,14 +194,14 @@ def _check_friction(_: Axis, question: Question) -> None:
 
 
 def _check_in_plane(axis: Axis, question: Question) -> None:
-    if not isinstance(question.body, Body):
+    if not isinstance(question.body, PLANE_BODIES):
         raise InvalidValueError(
             "{axis} varies only for a plane body, got {value}", parameter="body", value=question.body, axis=axis.name
         )
 
 
 def _check_in_space(axis: Axis, question: Question) -> None:
-    if isinstance(question.body, Body):
+    if isinstance(question.body, PLANE_BODIES):
         raise InvalidValueError(
             "{axis} varies only for a 3D body, got {value}", parameter="body", value=question.body, axis=axis.name
         )

@@ -3,7 +3,7 @@
 import hashlib
 import json
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -15,7 +15,8 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.batch import Batch
 from rocking.dynamics.content import full_name, hash_of
 from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw
-from rocking.dynamics.plane.fast_engine import RESULTS, Arrays, empty_results
+from rocking.dynamics.mechanics import mechanics_of
+from rocking.dynamics.plane.fast_engine import Arrays, empty_results
 from rocking.dynamics.plane.settings import PlaneSettings
 from rocking.dynamics.rows import PIECE, ROWS, SIDE_DEFAULTS, Rows
 from rocking.dynamics.settings import Settings, check_progress
@@ -67,9 +68,9 @@ class Histories(ABC):
         return 1
 
     @property
-    def columns(self) -> dict[str, Any]:
+    def columns(self) -> Mapping[str, Any]:
         """Data types of the results by name."""
-        return RESULTS
+        return mechanics_of(self.settings).study_columns
 
     @property
     def parts(self) -> "tuple[Histories, ...]":
@@ -204,7 +205,7 @@ class Histories(ABC):
 
     def _run_made(self, first: int, last: int, threads: int | None) -> Arrays:
         """Run with motions that are generated for a few histories and then removed."""
-        results = empty_results(last - first)
+        results = empty_results(last - first, self.columns)
         for start in range(first, last, _ROWS_AT_ONCE):
             rows = self.rows(start, min(start + _ROWS_AT_ONCE, last))
             motions, inverse = np.unique(rows.motion, return_inverse=True)

@@ -158,8 +158,7 @@ class Cases:
                 "{parameter} must have a peak above zero to be scaled, got {motion!r}", parameter="motion",
                 motion=motion.name,
             )  # fmt: skip
-        angles = np.stack([sides["alpha_right"], sides["alpha_left"]])
-        uplift_by_side = settings.gravity * (angles if settings.linear else np.tan(angles))  # Eq. 25
+        uplift_by_side = mechanics_of(settings).uplift_accelerations(settings, sides)
         uplift, record = uplift_by_side.min(axis=0), isinstance(motion, GroundMotion)
         # other components may lift a 3D body before the scaled component does
         lower_start = not mechanics_of(settings).in_plane or getattr(motion, "vertical", None) is not None

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from rocking import checks, quantities
-from rocking.bodies import Block, Body
+from rocking.bodies import PLANE_BODIES, Block, Body, Restrained
 from rocking.conventions import DEFAULT_RESTITUTION, FloatArray
 from rocking.dynamics.batch import Batch
 from rocking.dynamics.impact_laws import ImpactLaw
@@ -46,7 +46,7 @@ class Question:
     engine: str = "auto"  # name of the engine
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "motion", together(self.motion, plane=isinstance(self.body, Body)))
+        object.__setattr__(self, "motion", together(self.motion, plane=isinstance(self.body, PLANE_BODIES)))
         checks.of_kind("motion", self.motion, (GroundMotion, Pulse, Components), "a GroundMotion or a pulse")
         _ = self.parameters
 
@@ -91,7 +91,9 @@ class Question:
         return results, work
 
     def check_stretching(self, name: str) -> None:
-        """Raise an error if time is stretched for a restitution that depends on the speed."""
+        """Raise an error if time is stretched for restraints, or for a restitution that depends on the speed."""
+        if isinstance(self.body, Restrained):
+            raise InvalidValueError("{name} cannot vary for a body with restraints", name=name)
         if self.law.kind in {1, -1}:
             raise InvalidValueError(
                 "{name} stretches the time of the motion, which needs a restitution that does not depend on the speed "
@@ -172,8 +174,7 @@ class Case:
     def uplift_acceleration(self) -> FloatArray:
         """Ground acceleration of uplift: g tan alpha, or g alpha in the linear equations [m/s2]."""
         settings = self.question.settings
-        alpha = self.slenderness_angle
-        return settings.gravity * (alpha if settings.linear else np.tan(alpha))  # Eq. 25
+        return np.asarray(np.fmin(*mechanics_of(settings).uplift_accelerations(settings, self.sides)))
 
     @property
     def values(self) -> dict[str, FloatArray]:

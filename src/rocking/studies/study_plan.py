@@ -95,17 +95,27 @@ class Study:
     def types(self) -> dict[str, Any]:
         """Data types of the results in the units of the user."""
         own = self.histories.columns
-        return TYPES if own is RESULTS else own
+        return {**TYPES, **{name: own[name] for name in self.further_columns}} if self.is_of_rocking else dict(own)
+
+    @property
+    def is_of_rocking(self) -> bool:
+        """True if the histories have all results of the fast engine."""
+        return RESULTS.keys() <= self.histories.columns.keys()
+
+    @property
+    def further_columns(self) -> tuple[str, ...]:
+        """Names of results that the fast engine does not have, such as those of restraints."""
+        return tuple(name for name in self.histories.columns if name not in RESULTS)
 
     def derived(self, first: int, last: int, results: Arrays) -> Arrays:
         """Return the results of histories in the units of the user, with derived quantities."""
-        if self.types is not TYPES:
+        if not self.is_of_rocking:
             return results
         own = results if self.rescale is None else self.rescale(first, last, dict(results))
         sides = self.histories.rows(first, last).values
         ratio = peak_ratio(own["peak_rotation"], sides["alpha_right"], sides["alpha_left"])
         all_results = {**own, **flags(own), "mode": modes_of(own), "peak_ratio": ratio}
-        return {name: all_results[name] for name in HISTORY}
+        return {name: all_results[name] for name in self.types}
 
     def dataset(self, results: Mapping[str, Any]) -> "xr.Dataset":
         """Return results of all histories over the dimensions, with units."""

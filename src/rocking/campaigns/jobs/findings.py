@@ -17,7 +17,7 @@ from rocking.spec.questions.fragility import MEASURES
 from rocking.studies.fragility.cloud_analysis import clearly_lifted
 from rocking.studies.fragility.measure_comparison import MeasureComparison, compare_measures
 from rocking.studies.sensitivity.comparison import Sensitivity, sampled_in
-from rocking.studies.study_plan import TYPES, AdaptiveResult, Study
+from rocking.studies.study_plan import AdaptiveResult, Study
 from rocking.tables import PIECE
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ def analyses(folder: JobFolder) -> dict[str, Any]:
     study = folder.job.study
     if study.finish is None:
         raise InvalidValueError('a campaign of kind "{kind}" has no fragility', kind=folder.job.document.campaign.kind)
-    return study.finish(folder.campaign.results(*READ))
+    return study.finish(folder.campaign.results(*READ, *study.further_columns))
 
 
 def answer(folder: JobFolder) -> AdaptiveResult:
@@ -126,7 +126,7 @@ def assessment(folder: JobFolder) -> "Assessment":
 def comparable(folder: JobFolder) -> bool:
     """Return True if `comparison` can compare the restitutions of a campaign."""
     study = folder.job.study
-    is_alone = study.search is not None or study.assess is not None or study.types is not TYPES
+    is_alone = study.search is not None or study.assess is not None or not study.is_of_rocking
     return len(folder.job.problem.restitutions) > 1 and not is_alone
 
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 COLUMNS = (*RESULTS, *RESTRAINT_RESULTS, "overturned")
-_AFTER = 15.0  # product of p and the duration after the motion
+AFTER = 15.0  # product of p and the duration after the motion
 
 
 def many_with_restraints(cases: Combinations, settings: RestrainedSettings) -> "xr.Dataset":
@@ -49,7 +49,7 @@ def many_with_restraints(cases: Combinations, settings: RestrainedSettings) -> "
     for body, motion, scale, choice, start in np.ndindex(shape):
         parameters = table[body][choice]
         slow = min(parameters.right.frequency_parameter, parameters.left.frequency_parameter)
-        length = cases.duration or motions[motion].duration + _AFTER / slow
+        length = cases.duration or motions[motion].duration + AFTER / slow
         histories.append(
             RestrainedHistory(bodies[body], parameters, motion, states[start], float(scales[scale]), length)
         )

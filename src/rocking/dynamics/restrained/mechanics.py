@@ -1,10 +1,17 @@
 """Rocking of a plane body with tendons, dampers, fuses and springs."""
 
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from rocking.bodies.restrained import Restrained
+from rocking.conventions import FloatArray
+from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.mechanics_base import Combinations, PlaneMechanics
-from rocking.dynamics.restrained.settings import RestrainedSettings
+from rocking.dynamics.parameters import RockingParameters
+from rocking.dynamics.restrained.settings import RestrainedSettings, RestrainedStudySettings
+from rocking.dynamics.settings import Settings
+from rocking.errors import InvalidValueError
 
 
 class RestrainedRocking(PlaneMechanics):
@@ -44,3 +51,33 @@ class RestrainedRocking(PlaneMechanics):
         from rocking.dynamics.restrained.many import many_with_restraints
 
         return many_with_restraints(combinations, settings)
+
+    def study_settings(self, body: Any, options: Mapping[str, Any]) -> Settings:
+        settings, _ = self.split(options, RestrainedSettings, frozenset())
+        return RestrainedStudySettings(**settings.stated, body=body)
+
+    def parameters(self, body: Any, restitution: Any, settings: Any) -> RockingParameters:
+        if body is not settings.body and settings != replace(settings, body=body):
+            raise InvalidValueError("a study accepts one body with restraints, got several")
+        return RockingParameters.of_body(body.body, restitution, settings.gravity)
+
+    @property
+    def study_columns(self) -> Mapping[str, Any]:
+        from rocking.dynamics.restrained.rows import COLUMNS
+
+        return COLUMNS
+
+    def uplift_accelerations(self, settings: Any, sides: Mapping[str, FloatArray]) -> FloatArray:
+        from rocking.dynamics.restrained.rows import uplift_accelerations
+
+        return uplift_accelerations(settings, len(sides["alpha_right"]))
+
+    def rows(self, motions: Sequence[Any], law: ImpactLaw, settings: RestrainedStudySettings, engine: str) -> Any:
+        from rocking.dynamics.restrained.rows import RowsWithRestraints
+
+        return RowsWithRestraints(motions, law, settings, engine)
+
+    def engine_of_study(self, *, fast: bool) -> str:
+        from rocking.dynamics.restrained.engines import FAST
+
+        return FAST if fast else "reference"

@@ -52,6 +52,9 @@ class ExportTable(JobTable):
     )  # fmt: skip
 
 
+State = Annotated[str, Field(pattern="^(rocking|overturning|(yield|rupture)( of .+)?)$")]
+
+
 def _one_state(value: Any, validate: ValidatorFunctionWrapHandler) -> Any:
     """Return a limit state. Raise a single error for an invalid value, not one error per allowed type."""
     try:
@@ -59,8 +62,9 @@ def _one_state(value: Any, validate: ValidatorFunctionWrapHandler) -> Any:
     except ValidationError as error:
         if isinstance(value, str):
             raise InvalidValueError(
-                "must be rocking, overturning, or a rotation / slenderness angle, got {entry!r:.60}", entry=value
-            ) from error
+                "must be rocking, overturning, yield, rupture, yield of NAME, rupture of NAME, or a rotation / "
+                "slenderness angle, got {entry!r:.60}", entry=value,
+            ) from error  # fmt: skip
         raise PydanticKnownError("greater_than", {"gt": 0}) from error
 
 
@@ -72,9 +76,10 @@ class FragilityTable(JobTable):
         "intensity levels, in the unit of the intensity measure", usual="required; not allowed for kind = cloud",
         unit="unit of im", allowed="increasing numbers > 0",
     )  # fmt: skip
-    limit_states: list[Annotated[Positive | Literal["rocking", "overturning"], WrapValidator(_one_state)]] = key(
-        "limit states: rotation / slenderness angle; rocking and overturning are included",
-        [0.5], allowed="numbers > 0, rocking, overturning",
+    limit_states: list[Annotated[Positive | State, WrapValidator(_one_state)]] = key(
+        "limit states: rotation / slenderness angle; rocking and overturning are included; with restraints also yield, "
+        "rupture, yield of NAME and rupture of NAME",
+        [0.5], allowed="numbers > 0, rocking, overturning, yield, rupture, yield of NAME, rupture of NAME",
     )  # fmt: skip
     tolerance: float | None = key(
         "relative width of the last intervals: width / level [-]", None, usual="1e-8", ge=0.0, le=0.1
@@ -86,6 +91,7 @@ class AnalysisQuestion(BodyQuestion):
     """A fragility analysis of one body."""
 
     needs_motions: ClassVar[bool] = True
+    with_restraints: ClassVar[bool] = True
     of_files: ClassVar[dict[str, set[str]]] = {"export": {"bootstrap", "ims", "columns"}}
 
     fragility: FragilityTable = Field(default_factory=FragilityTable)

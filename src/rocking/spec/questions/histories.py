@@ -29,6 +29,7 @@ class HistoriesQuestion(BodyQuestion):
     """Every motion with every body, scale factor and restitution."""
 
     kind: ClassVar[str] = "histories"
+    with_restraints: ClassVar[bool] = True
     several_bodies: ClassVar[bool] = True
 
     histories: HistoriesTable = Field(default_factory=HistoriesTable)

@@ -55,6 +55,7 @@ class MapQuestion(BodyQuestion):
     """The outcomes of one body under one motion over two parameters."""
 
     kind: ClassVar[str] = "overturning-map"
+    with_restraints: ClassVar[bool] = True
     of_files: ClassVar[dict[str, set[str]]] = {"map": {"boundary", "tolerance"}}
 
     map: MapTable

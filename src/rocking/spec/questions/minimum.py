@@ -30,6 +30,7 @@ class MinimumQuestion(BodyQuestion):
     """All accelerations at which bodies begin or cease to overturn under motions."""
 
     kind: ClassVar[str] = "minimum-acceleration"
+    with_restraints: ClassVar[bool] = True
     several_bodies: ClassVar[bool] = True
     needs_motions: ClassVar[bool] = True
 

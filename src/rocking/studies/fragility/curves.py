@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
@@ -15,7 +16,7 @@ from rocking.motions.intensity import exchange_unit
 from rocking.statistics.goodness import STATISTICS, Agreement, Ends, Repeated, agreement_of, ends_of, repeated_of
 from rocking.statistics.lognormal import LognormalFit, difference_extremes, lognormal_probability
 from rocking.statistics.ordered_probit import nested_curves
-from rocking.studies.fragility.subject import NAMED, Subject, checked_levels
+from rocking.studies.fragility.subject import NAMED, Subject, checked_levels, damage_state
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -318,6 +319,11 @@ def with_evidence(
 
 def without_crossing(model: FragilityModel, crossing_curves: Crossing = "keep-uplift") -> FragilityModel:
     """Return the model with curves that do not cross, by one of the treatments. With "refuse", it is unchanged."""
+    own = tuple(curve for curve in model.curves if damage_state(curve.state))
+    if own and len(own) < len(model.curves):  # the states of restraints are in no order with those of the rotation
+        rest = replace(model, curves=tuple(curve for curve in model.curves if curve not in own))
+        joined = without_crossing(rest, crossing_curves)
+        return replace(joined, curves=(*joined.curves, *own))
     match check_crossing(crossing_curves):
         case "common-dispersion" if len(model.curves) > 1:
             return with_common_dispersion(model)
@@ -467,7 +473,7 @@ class Excess:
 def largest_excess(model: FragilityModel, lowest: float, highest: float) -> Excess | None:
     """Return the largest excess of neighbouring curves between two levels; None if the curves do not cross."""
     largest = None
-    for lesser, worse in zip(model.curves[:-1], model.curves[1:], strict=True):
+    for lesser, worse in pairwise(curve for curve in model.curves if not damage_state(curve.state)):
         medians, dispersions = np.array([(c.median, c.dispersion) for c in (lesser, worse)]).T
         with np.errstate(over="ignore", under="ignore"):
             extremes = np.exp(difference_extremes(np.log(medians), dispersions))
@@ -487,6 +493,11 @@ def crosses(model: FragilityModel, highest: float | None = None) -> Excess | Non
 
 def nested(model: FragilityModel, crossing_curves: Crossing = "refuse", highest: float | None = None) -> FragilityModel:
     """Return curves that do not cross up to the highest level, by one of the treatments."""
+    if own := [curve.state for curve in model.curves if damage_state(curve.state)]:
+        raise InvalidValueError(
+            "this file needs limit states in an order, without states of restraints, got {states}",
+            parameter="limit_states", states=", ".join(own),
+        )  # fmt: skip
     model = without_crossing(model, crossing_curves)
     if (worst := crosses(model, highest)) is None:
         return model

@@ -48,6 +48,8 @@ class FragilityQuestion:
     ) -> Self:  # fmt: skip
         """Return the question. Parameters are those of `rocking.fragility`. Only intensities are computed."""
         kind, measure = checks.one_of("analysis", analysis, ANALYSES), subject.measure
+        states = limit_states_of(limit_states)
+        subject.check_states(states)
         odd = [name for name, value in (("scale", scale), ("min_rotation", min_rotation)) if value is not None]
         if odd and kind != "cloud":
             raise InvalidValueError(
@@ -67,12 +69,12 @@ class FragilityQuestion:
         histories = subject.product(factors)
         if kind == "incremental":
             check_repeatable(histories.law)
-        return cls(subject, kind, limit_states_of(limit_states), at, histories, min_rotation, tolerance)
+        return cls(subject, kind, states, at, histories, min_rotation, tolerance)
 
     def answer(self, arrays: Arrays, threads: int | None = None) -> MultipleStripeAnalysis | CloudAnalysis:
         """Return the analysis of the results of the histories. An incremental analysis then searches its intervals."""
         shape = (len(self.subject.motions), *(self.levels.shape if self.analysis != "cloud" else ()))
-        responses = Responses.of(arrays, self.subject.parameters, shape)
+        responses = Responses.of(arrays, self.subject.parameters, shape, self.subject.restraints)
         common = self.subject, self.limit_states, self.histories, responses, self.levels
         if self.analysis == "cloud":
             return CloudAnalysis(*common, self.min_rotation)

@@ -4,18 +4,21 @@ import json
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
 from rocking import checks, conventions
-from rocking.bodies import Body
+from rocking.bodies import PLANE_BODIES, Body, Restrained
+from rocking.bodies.restrained import facts_of
+from rocking.bodies.restraints import Restraint
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.dynamics.mechanics import mechanics_of, study_settings
 from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.dynamics.plane.fast_engine import Arrays
+from rocking.dynamics.restrained.settings import RestrainedStudySettings
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, extra
 from rocking.messages import plain_texts
@@ -53,22 +56,29 @@ class Subject:
     engine: str = "auto"  # name of the engine
 
     @classmethod
-    def of(cls, body: Body, motions: Motions, restitution: Any, measure_name: Any, options: dict[str, Any]) -> Self:
+    def of(
+        cls, body: Body | Restrained, motions: Motions, restitution: Any, measure_name: Any, options: dict[str, Any]
+    ) -> Self:
         """Return the subject of an analysis. Options are gravity [m/s2], engine and other fields of `Settings`."""
         remaining = dict(options)
         engine = remaining.pop("engine", "auto")
         settings = study_settings(body, remaining, remaining.pop("gravity", conventions.g))
         parameters = mechanics_of(settings).parameters(body, restitution, settings)
-        all_motions = motions if isinstance(motions, MotionSet) else MotionList(motions, plane=isinstance(body, Body))
+        in_plane = isinstance(body, PLANE_BODIES)
+        all_motions = motions if isinstance(motions, MotionSet) else MotionList(motions, plane=in_plane)
         return cls(parameters, all_motions, measure(measure_name), settings, engine)
+
+    @cached_property
+    def uplift_accelerations(self) -> FloatArray:
+        """Ground accelerations of uplift about the right and the left foot [m/s2]."""
+        return mechanics_of(self.settings).uplift_accelerations(self.settings, self._sides)[:, 0]
 
     @cached_property
     def scale(self) -> RockingScale:
         """Quantities of the body for the measures, taken from the side that lifts first."""
-        side = min(self.parameters.right, self.parameters.left, key=lambda s: s.slenderness_angle)
-        alpha, gravity = side.slenderness_angle, self.settings.gravity
-        tangent = alpha if self.settings.linear else math.tan(alpha)  # Eq. 25
-        return RockingScale(gravity * tangent, side.frequency_parameter, gravity)
+        right, left = self.uplift_accelerations.tolist()
+        side = self.parameters.left if left < right else self.parameters.right
+        return RockingScale(min(right, left), side.frequency_parameter, self.settings.gravity)
 
     @cached_property
     def intensities(self) -> FloatArray:
@@ -79,11 +89,9 @@ class Subject:
     def uplift_threshold(self) -> float | None:
         """Level above which all motions lift the body and below which no motion does; None if there is no such level.
 
-        This level exists for a body with equal sides that has a `lowest_uplift`.
+        This level exists for a body with a `lowest_uplift` that is equal for both sides.
         """
-        equal = math.isclose(
-            self.parameters.right.slenderness_angle, self.parameters.left.slenderness_angle, rel_tol=1e-12
-        )
+        equal = math.isclose(*self.uplift_accelerations.tolist(), rel_tol=1e-12)
         return self.lowest_uplift if equal else None
 
     @cached_property
@@ -144,6 +152,30 @@ class Subject:
         return {"units": "1" if unit == "-" else unit, "long_name": self.measure_words}
 
     @property
+    def restraints(self) -> tuple[str, ...]:
+        """Names of the restraints; empty for a body without restraints."""
+        return tuple(restraint.name for restraint in self._restraints)
+
+    @property
+    def _restraints(self) -> tuple[Restraint, ...]:
+        settings = self.settings
+        return settings.body.restraints if isinstance(settings, RestrainedStudySettings) else ()
+
+    @property
+    def _restraint_facts(self) -> dict[str, str]:
+        facts = [facts_of(restraint) for restraint in self._restraints]
+        return {"restraints": json.dumps(facts)} if facts else {}
+
+    def check_states(self, states: "Sequence[LimitState]") -> None:
+        """Raise an error for a state of restraints that the body does not have."""
+        for state in states:
+            if state.damage and (state.restraint or next(iter(self.restraints), "")) not in self.restraints:
+                raise InvalidValueError(
+                    "the body has no such restraint: {value}; its restraints are {names}", parameter="limit_states",
+                    value=state.name, names=", ".join(self.restraints) or "none",
+                )  # fmt: skip
+
+    @property
     def _sides(self) -> dict[str, FloatArray]:
         return sides_of([self.parameters])
 
@@ -180,6 +212,7 @@ class Subject:
             "motion_provenance": self._provenance,
             **origin_of(self.parameters.label),
             **{f"body_{name}": float(values[0]) for name, values in self._sides.items()},
+            **self._restraint_facts,
             **{f"setting_{k}": int(v) if isinstance(v, bool) else v for k, v in self.settings.stated.items()},
         }
 
@@ -195,37 +228,47 @@ def checked_levels(name: str, values: Any, unit: str) -> FloatArray:
 
 @dataclass(frozen=True)
 class LimitState:
-    """A limit state. A history that reaches a state has reached all lesser states."""
+    """A limit state. A history that reaches a state of the rotation has reached all lesser states of the rotation."""
 
-    name: str  # ``rocking``, ``rotation > 0.5 alpha`` or ``overturned``
-    level: float  # rotation / alpha that must be exceeded [-]: 0 for rocking, infinite for overturning
+    name: str  # ``rocking``, ``rotation > 0.5 alpha``, ``overturned``, ``yield``, ``rupture of tendon 1``
+    # rotation / alpha that must be exceeded [-]: 0 for rocking, infinite for overturning, NaN for restraints
+    level: float = math.nan
+    damage: str = ""  # ``yield`` or ``rupture`` for a state of restraints
+    restraint: str = ""  # name of the restraint; empty for any restraint
 
 
 NAMED = {"rocking": LimitState("rocking", 0.0), "overturning": LimitState("overturned", math.inf)}
+DAMAGES = ("yield", "rupture")
 
 
 def limit_states_of(levels: Sequence[float | str] = (0.5,)) -> tuple[LimitState, ...]:
-    """Return limit states, the mildest first, from rotations / alpha (increasing) and names.
+    """Return limit states from rotations / alpha (increasing) and names, overturning last.
 
-    If the sequence contains only numbers, rocking and overturning are added. A sequence with a name (``rocking``,
-    ``overturning``) is complete.
+    If the sequence contains neither ``rocking`` nor ``overturning``, both are added. States of restraints are
+    ``yield``, ``rupture``, ``yield of NAME`` and ``rupture of NAME``.
     """
     items: Any = [levels] if isinstance(levels, str) else levels
     names = [level for level in items if isinstance(level, str)] if isinstance(items, list | tuple) else []
-    if unknown := [name for name in names if name not in NAMED]:
-        raise InvalidValueError(
-            parameter="limit_states", allowed=f"rotations / alpha, {' or '.join(NAMED)}", value=unknown[0]
-        )
     if len(set(names)) < len(names):
         raise InvalidValueError(
             "{parameter} must contain each name at most once, got {value}", parameter="limit_states", value=levels
         )
+    damaged = [state for name in names if (state := damage_state(name)) is not None]
+    chosen = [name for name in names if damage_state(name) is None]
+    if unknown := [name for name in chosen if name not in NAMED]:
+        raise InvalidValueError(
+            parameter="limit_states", value=unknown[0],
+            allowed=f"rotations / alpha, {', '.join(NAMED)}, yield, rupture, yield of NAME or rupture of NAME",
+        )  # fmt: skip
     between = _rotations([level for level in items if not isinstance(level, str)] if names else items)
-    chosen = names or NAMED
-    return tuple(
-        state for state in (NAMED["rocking"], *between, NAMED["overturning"])
-        if state in between or any(NAMED[name] is state for name in chosen)
-    )  # fmt: skip
+    rocking, overturning = ([state] * (not chosen or name in chosen) for name, state in NAMED.items())
+    return (*rocking, *between, *damaged, *overturning)
+
+
+def damage_state(name: str) -> LimitState | None:
+    """Return the state of restraints with a name; None for another name."""
+    damage, _, restraint = name.partition(" of ")
+    return LimitState(name, damage=damage, restraint=restraint) if damage in DAMAGES else None
 
 
 def _rotations(levels: Any) -> tuple[LimitState, ...]:
@@ -248,10 +291,13 @@ class Responses:
     sides: np.ndarray  # side of overturning: 1 right, -1 left, 0 without overturning
     # 1 for a tensile contact force, as in `lost_contact` [-]; None if not computed
     lost: FloatArray | None = None
+    restraints: tuple[str, ...] = ()  # names of the restraints
+    # sums of 2^k over the restraints k with a damage, by the names in `DAMAGES`
+    damaged: dict[str, IntArray] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, arrays: Arrays, parameters: Any, shape: tuple[int, ...]) -> "Responses":
-        """Return the responses of one body from results, with a given shape."""
+    def of(cls, arrays: Arrays, parameters: Any, shape: tuple[int, ...], restraints: Sequence[str] = ()) -> "Responses":
+        """Return the responses of one body from results, with a given shape. `restraints` are their names."""
         missing = {"outcome", "peak_rotation"} - set(arrays)
         sizes = {np.size(arrays[name]) for name in ("outcome", "peak_rotation") if name in arrays}
         if missing or sizes != {math.prod(shape)}:
@@ -268,7 +314,10 @@ class Responses:
         rotation /= right if right == left else np.where(to_right, right, left)
         rotation[over], rotation[outcome == Outcome.FAILED.code] = math.inf, math.nan
         lost = lost_contact(arrays).reshape(shape) if "least_force" in arrays else None
-        return cls(outcome, rotation, over * np.where(to_right, np.int8(1), np.int8(-1)), lost)
+        columns = zip(DAMAGES, ("yielded_restraints", "broken_restraints"), strict=True)
+        damaged = {name: np.asarray(arrays[column]).reshape(shape) for name, column in columns if column in arrays}
+        side = over * np.where(to_right, np.int8(1), np.int8(-1))
+        return cls(outcome, rotation, side, lost, tuple(restraints), damaged)
 
     @property
     def contact(self) -> str:
@@ -292,7 +341,13 @@ class Responses:
         return overturned(self.outcome)
 
     def exceed(self, state: LimitState) -> FloatArray:
-        """Return 1 for histories that reached a limit state, 0 for other histories, NaN without a result [-]."""
+        """Return 1 for histories that reached a limit state, 0 for other histories, NaN without a result [-].
+
+        An overturned body has reached every state of its restraints.
+        """
+        if state.damage:
+            bits = 1 << self.restraints.index(state.restraint) if state.restraint else -1
+            return of_results(self.outcome, ((self.damaged[state.damage] & bits) != 0) | (self.overturned == 1.0))
         if state.level == 0.0:
             return of_results(self.outcome, self.rocked | (self.overturned == 1.0))
         if math.isinf(state.level):
@@ -353,7 +408,7 @@ def fits_of(
     subject: Subject, limit_states: Sequence[LimitState], levels: FloatArray, responses: Responses
 ) -> dict[str, LognormalFit]:
     """Return the lognormal curves of the states, for histories at levels [unit of the measure]."""
-    uncertain = [state for state in limit_states if state.level > 0.0 or subject.uplift_threshold is None]
+    uncertain = [state for state in limit_states if state.level != 0.0 or subject.uplift_threshold is None]
     reached = [responses.exceed(state) == 1.0 for state in uncertain]
     counts = pooled(levels, responses.good, reached, subject.clusters)
     return {state.name: fit_counts(count) for state, count in zip(uncertain, counts, strict=True)}
