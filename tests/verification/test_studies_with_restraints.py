@@ -50,7 +50,7 @@ def test_states_of_a_fragility_are_those_of_its_single_histories():
     assert {name: values.tolist() for name, values in analysis.counts.items()} == {
         name: values.tolist() for name, values in counts.items()
     }
-    assert len({tuple(values) for values in counts.values()}) >= 4  # the states are told apart
+    assert len({tuple(values) for values in counts.values()}) >= 4  # the states differ
     assert counts["rupture"].tolist() != counts["overturned"].tolist()
 
 
@@ -92,19 +92,19 @@ def test_restraints_without_effect():
     tied, free = (fragility_analysis(body, PULSES, LEVELS, "ked") for body in (nothing, WALL))
     assert np.array_equal(tied.responses.outcome, free.responses.outcome)
     np.testing.assert_allclose(tied.responses.rotation, free.responses.rotation, rtol=1e-9, atol=1e-12)
-    some = fragility_analysis(rk.Restrained(WALL, [rk.Tendon(x=0.5, stiffness=5e4)]), PULSES, LEVELS, "ked")
-    assert not np.array_equal(some.responses.outcome, free.responses.outcome)
+    elastic = fragility_analysis(rk.Restrained(WALL, [rk.Tendon(x=0.5, stiffness=5e4)]), PULSES, LEVELS, "ked")
+    assert not np.array_equal(elastic.responses.outcome, free.responses.outcome)
 
 
 def test_the_smallest_overturning_acceleration_separates_single_histories():
     tied = rk.Restrained(WALL, [rk.Tendon(x=0.5, stiffness=5e4, prestress=5e3)])
     pulse = rk.pulses.sine(1.0, 1.4)
-    least = minimum_overturning_acceleration(tied, pulse, "housner", samples=40)
-    assert least.minimum is not None
-    below, above = (rk.simulate(tied, pulse.scaled(f * least.minimum), "housner").outcome for f in (1 - 1e-6, 1 + 1e-6))
+    lowest = minimum_overturning_acceleration(tied, pulse, "housner", samples=40)
+    assert lowest.minimum is not None
+    below, above = (rk.simulate(tied, pulse.scaled(f * lowest.minimum), "housner").outcome for f in (1 - 1e-6, 1 + 1e-6))
     assert (below, above) == (rk.Outcome.ROCKED, rk.Outcome.OVERTURNED)
     free = minimum_overturning_acceleration(WALL, pulse, "housner", samples=40)
-    assert least.minimum > free.minimum
+    assert lowest.minimum > free.minimum
 
 
 def test_what_a_study_with_restraints_refuses():

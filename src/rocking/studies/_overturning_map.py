@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking import conventions
-from rocking.bodies import Body
+from rocking.bodies import Body, Restrained
 from rocking.conventions import DEFAULT_RESTITUTION
 from rocking.errors import extra
 from rocking.messages import plain_texts
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def overturning_map(  # noqa: PLR0913 - users set every one of them
-    body: Body,
+    body: Body | Restrained,
     motion: Motion,
     x: Axis | tuple[str, Any],
     y: Axis | tuple[str, Any],
@@ -41,8 +41,8 @@ def overturning_map(  # noqa: PLR0913 - users set every one of them
 
     Parameters
     ----------
-    body : Body
-        The body. Axes replace its values.
+    body : Body or Restrained
+        The body. Axes replace its values, but not the dimensions of a body with restraints.
     motion : GroundMotion, Pulse or mapping
         The motion, or its components as for `simulate`. Axes replace its values.
     x, y : Axis or (str, array_like)

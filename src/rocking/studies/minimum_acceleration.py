@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from rocking import checks, conventions
-from rocking.bodies import Body
+from rocking.bodies import Body, Restrained
 from rocking.conventions import DEFAULT_RESTITUTION, FloatArray, IntArray
 from rocking.dynamics.mechanics import mechanics_of, study_settings
 from rocking.dynamics.parameters import sides_of
@@ -244,7 +244,7 @@ def _transitions(scan: AmplitudeSearch, cases: Cases, effort: Effort) -> tuple[T
 
 
 def minimum_overturning_acceleration(
-    body: Body,
+    body: Body | Restrained,
     motion: Motion,
     restitution: Any = DEFAULT_RESTITUTION,
     *,
@@ -264,8 +264,8 @@ def minimum_overturning_acceleration(
 
     Parameters
     ----------
-    body : Body
-        The body.
+    body : Body or Restrained
+        The body, or a plane body with restraints.
     motion : GroundMotion, Pulse or mapping
         The motion, or its components as for `simulate`. Its amplitude must not be zero.
     restitution : as for `simulate`
@@ -316,7 +316,7 @@ def minimum_overturning_acceleration(
 
 
 def minimum_overturning_accelerations(  # noqa: PLR0913 - users set every one of them
-    bodies: Sequence[Body],
+    bodies: Sequence[Body | Restrained],
     motion: Motion,
     restitution: Any = DEFAULT_RESTITUTION,
     *,

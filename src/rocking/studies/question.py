@@ -65,7 +65,7 @@ class Question:
         """The motion prepared for the engine."""
         return Batch([self.motion.segments()], self.law, self.settings, self.threads, self.engine)
 
-    def parameters_of(self, body: Body) -> RockingParameters:
+    def parameters_of(self, body: Body | Restrained) -> RockingParameters:
         """Return the parameters of another body. The restitution is evaluated for this body."""
         return mechanics_of(self.settings).parameters(body, self.restitution, self.settings)
 

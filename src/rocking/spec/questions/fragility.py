@@ -77,8 +77,8 @@ class FragilityTable(JobTable):
         unit="unit of im", allowed="increasing numbers > 0",
     )  # fmt: skip
     limit_states: list[Annotated[Positive | State, WrapValidator(_one_state)]] = key(
-        "limit states: rotation / slenderness angle; rocking and overturning are included; with restraints also yield, "
-        "rupture, yield of NAME and rupture of NAME",
+        "limit states: rotation / slenderness angle (rocking and overturning are included); with restraints also "
+        "yield, rupture, yield of NAME and rupture of NAME",
         [0.5], allowed="numbers > 0, rocking, overturning, yield, rupture, yield of NAME, rupture of NAME",
     )  # fmt: skip
     tolerance: float | None = key(

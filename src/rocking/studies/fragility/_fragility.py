@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking import checks
-from rocking.bodies import Body
+from rocking.bodies import Body, Restrained
 from rocking.conventions import DEFAULT_RESTITUTION, FloatArray
 from rocking.errors import InvalidValueError
 from rocking.statistics.goodness import ends_of
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def fragility(  # noqa: PLR0913 - users set every one of them
-    body: Body,
+    body: Body | Restrained,
     motions: Motions,
     levels: Any = None,
     restitution: Any = DEFAULT_RESTITUTION,
@@ -39,8 +39,8 @@ def fragility(  # noqa: PLR0913 - users set every one of them
 
     Parameters
     ----------
-    body : Body
-        The body.
+    body : Body or Restrained
+        The body, or a plane body with restraints.
     motions : GroundMotion or Pulse, a sequence of them, or MotionSet
         Either records only or pulses only.
     levels : array_like, optional
@@ -57,8 +57,14 @@ def fragility(  # noqa: PLR0913 - users set every one of them
         A name from `rocking.motions.intensity.measures`, or ``sa(period)``. Levels need a measure that increases with
         the scale factor.
     limit_states : sequence of float or str
+<<<<<<< HEAD
         Limit states as rotations / alpha [-]. Rocking and overturning are added, unless ``"rocking"`` or
         ``"overturning"`` is in the sequence.
+=======
+        Limit states as rotations over alpha [-]. Rocking and overturning are added, unless ``"rocking"`` or
+        ``"overturning"`` is in the sequence. States of restraints are ``"yield"`` and ``"rupture"`` of any restraint,
+        and ``"yield of NAME"`` and ``"rupture of NAME"``. An overturned body has reached them all.
+>>>>>>> 4c2541c3 (Document studies with restraints; translate their messages)
     scale : float, optional
         Scale factor of all motions of a cloud [-]. The default is 1.
     min_rotation : float, optional
@@ -110,7 +116,7 @@ def fragility(  # noqa: PLR0913 - users set every one of them
 
 
 def fragility_analysis(  # noqa: PLR0913 - those of `fragility`
-    body: Body,
+    body: Body | Restrained,
     motions: Motions,
     levels: Any = None,
     restitution: Any = DEFAULT_RESTITUTION,

@@ -321,8 +321,8 @@ def without_crossing(model: FragilityModel, crossing_curves: Crossing = "keep-up
     """Return the model with curves that do not cross, by one of the treatments. With "refuse", it is unchanged."""
     own = tuple(curve for curve in model.curves if damage_state(curve.state))
     if own and len(own) < len(model.curves):  # the states of restraints are in no order with those of the rotation
-        rest = replace(model, curves=tuple(curve for curve in model.curves if curve not in own))
-        joined = without_crossing(rest, crossing_curves)
+        ordered = replace(model, curves=tuple(curve for curve in model.curves if curve not in own))
+        joined = without_crossing(ordered, crossing_curves)
         return replace(joined, curves=(*joined.curves, *own))
     match check_crossing(crossing_curves):
         case "common-dispersion" if len(model.curves) > 1:
