@@ -101,7 +101,9 @@ def test_the_smallest_overturning_acceleration_separates_single_histories():
     pulse = rk.pulses.sine(1.0, 1.4)
     lowest = minimum_overturning_acceleration(tied, pulse, "housner", samples=40)
     assert lowest.minimum is not None
-    below, above = (rk.simulate(tied, pulse.scaled(f * lowest.minimum), "housner").outcome for f in (1 - 1e-6, 1 + 1e-6))
+    below, above = (
+        rk.simulate(tied, pulse.scaled(f * lowest.minimum), "housner").outcome for f in (1 - 1e-6, 1 + 1e-6)
+    )
     assert (below, above) == (rk.Outcome.ROCKED, rk.Outcome.OVERTURNED)
     free = minimum_overturning_acceleration(WALL, pulse, "housner", samples=40)
     assert lowest.minimum > free.minimum
