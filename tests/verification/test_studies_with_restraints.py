@@ -126,7 +126,7 @@ def test_what_a_study_with_restraints_refuses():
         rk.fragility(tied, PULSES, LEVELS, limit_states=["yield of fuse 1"])
     with pytest.raises(InvalidValueError, match="no such restraint"):
         rk.fragility(WALL, PULSES, LEVELS, limit_states=["rupture"])
-    with pytest.raises(InvalidValueError, match="must be rotations over alpha"):
+    with pytest.raises(InvalidValueError, match="must be rotations / alpha"):
         rk.fragility(tied, PULSES, LEVELS, limit_states=["yielding"])
 
 

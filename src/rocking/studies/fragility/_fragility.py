@@ -57,14 +57,9 @@ def fragility(  # noqa: PLR0913 - users set every one of them
         A name from `rocking.motions.intensity.measures`, or ``sa(period)``. Levels need a measure that increases with
         the scale factor.
     limit_states : sequence of float or str
-<<<<<<< HEAD
         Limit states as rotations / alpha [-]. Rocking and overturning are added, unless ``"rocking"`` or
-        ``"overturning"`` is in the sequence.
-=======
-        Limit states as rotations over alpha [-]. Rocking and overturning are added, unless ``"rocking"`` or
         ``"overturning"`` is in the sequence. States of restraints are ``"yield"`` and ``"rupture"`` of any restraint,
         and ``"yield of NAME"`` and ``"rupture of NAME"``. An overturned body has reached them all.
->>>>>>> 4c2541c3 (Document studies with restraints; translate their messages)
     scale : float, optional
         Scale factor of all motions of a cloud [-]. The default is 1.
     min_rotation : float, optional
