@@ -1,6 +1,5 @@
 """Interface of a mechanics: its bodies and settings, and functions for one history, many histories and studies."""
 
-import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -8,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from rocking import checks, portable
+from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import FloatArray
 from rocking.dynamics.impact_laws import ImpactLaw
@@ -153,11 +152,12 @@ class Mechanics(ABC):
 
         return RESULTS
 
-    def uplift_accelerations(self, settings: Settings, sides: Mapping[str, FloatArray]) -> FloatArray:
+    def uplift_accelerations(
+        self, settings: Settings, sides: Mapping[str, FloatArray], tangent: Callable[[FloatArray], FloatArray] = np.tan
+    ) -> FloatArray:
         """Return the ground accelerations of uplift about the right and the left foot [m/s2], shape (2, n)."""
         angles = np.stack([sides["alpha_right"], sides["alpha_left"]])
-        tangents = angles if settings.linear else portable.each(math.tan, angles)
-        return np.asarray(settings.gravity * tangents)  # Eq. 25
+        return np.asarray(settings.gravity * (angles if settings.linear else tangent(angles)))  # Eq. 25
 
     def rows(self, motions: Sequence[Any], law: Any, settings: Any, engine: str) -> "RowRunner":
         """Return the object that computes the rows of a study."""

@@ -67,7 +67,7 @@ class RestrainedRocking(PlaneMechanics):
 
         return COLUMNS
 
-    def uplift_accelerations(self, settings: Any, sides: Mapping[str, FloatArray]) -> FloatArray:
+    def uplift_accelerations(self, settings: Any, sides: Mapping[str, FloatArray], tangent: Any = None) -> FloatArray:
         from rocking.dynamics.restrained.rows import uplift_accelerations
 
         return uplift_accelerations(settings, len(sides["alpha_right"]))

@@ -5,12 +5,12 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
-from rocking import checks, conventions
+from rocking import checks, conventions, portable
 from rocking.bodies import PLANE_BODIES, Body, Restrained
 from rocking.bodies.restrained import facts_of
 from rocking.bodies.restraints import Restraint
@@ -71,7 +71,8 @@ class Subject:
     @cached_property
     def uplift_accelerations(self) -> FloatArray:
         """Ground accelerations of uplift about the right and the left foot [m/s2]."""
-        return mechanics_of(self.settings).uplift_accelerations(self.settings, self._sides)[:, 0]
+        tangent = partial(portable.each, math.tan)  # the levels have the same bits on every processor
+        return mechanics_of(self.settings).uplift_accelerations(self.settings, self._sides, tangent)[:, 0]
 
     @cached_property
     def scale(self) -> RockingScale:
