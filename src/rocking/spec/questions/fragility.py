@@ -73,12 +73,11 @@ class FragilityTable(JobTable):
 
     im: Text = key("intensity measure: pga, pgv, arias, sa(0.5) and more", "pga", allowed=_MEASURES)
     levels: Numbers | None = key(
-        "intensity levels, in the unit of the intensity measure", usual="required; not allowed for kind = cloud",
+        "intensity levels in the unit of im", usual="required; not allowed for kind = cloud",
         unit="unit of im", allowed="increasing numbers > 0",
     )  # fmt: skip
     limit_states: list[Annotated[Positive | State, WrapValidator(_one_state)]] = key(
-        "limit states: rotation / slenderness angle (rocking and overturning are included); with restraints also "
-        "yield, rupture, yield of NAME and rupture of NAME",
+        "limit states besides rocking and overturning: rotation / slenderness angle, yield, rupture",
         [0.5], allowed="numbers > 0, rocking, overturning, yield, rupture, yield of NAME, rupture of NAME",
     )  # fmt: skip
     tolerance: float | None = key(
