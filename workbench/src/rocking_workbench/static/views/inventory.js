@@ -123,7 +123,7 @@ const label = ({ number, name }) => [...new Set([number, name])].filter(Boolean)
 /** @param {string[]} ends */
 const between = ([low, high]) => t("{low} to {high}", { low, high });
 
-/** Ratings with the other restitution models. @param {{ rating_by_comparison: Words }} object */
+/** Ratings with the other restitution models. @param {{ rating_by_comparison: Record<string, string> }} object */
 const byModel = (object) => Object.entries(object.rating_by_comparison)
   .map(([model, rating]) => `${model} ${t(rating.toUpperCase())}`).join(", ");
 
