@@ -41,7 +41,7 @@ def main(arguments: Sequence[str] | None = None, unnamed_file: str = "") -> None
                 args=_with_help(arguments, SUBCOMMANDS), prog_name="rocking", standalone_mode=False, obj=main
             )
     except RockingError as error:
-        refusal = with_help(error.without_file(unnamed_file))
+        refusal = error.without_file(unnamed_file) if unnamed_file else with_help(error)  # forms have no commands
     except click_exception as error:
         refusal = _refusal(error)
         refusal.add_hint(help_hint(getattr(error, "ctx", None)))
