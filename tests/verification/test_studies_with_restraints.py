@@ -13,7 +13,7 @@ from rocking.studies.fragility import fragility_analysis, model_of, to_csv
 from rocking.studies.fragility.subject import LimitState, Subject
 from rocking.studies.sensitivity import SampledRestitution
 
-pytestmark = pytest.mark.verifies(room="rocking in the plane")
+pytestmark = pytest.mark.verifies(room="studies")
 
 WALL = rk.Block(width=1.0, height=6.0, mass=4000.0)
 PULSES = [rk.pulses.sine(1.0, period) for period in (0.4, 0.6, 0.8, 1.0, 1.4)]
@@ -29,8 +29,9 @@ RESTRAINTS = [
 TIED = rk.Restrained(SKEW, RESTRAINTS)
 
 
-@pytest.mark.verifies("second route", "the same histories, one by one", within="exact counts, 1e-9 of the peak")
+@pytest.mark.verifies("computed anew", "the same histories, one by one", within="exact counts, 1e-9 of the peak")
 def test_states_of_a_fragility_are_those_of_its_single_histories():
+    """Counts of rocking, rotation, yield, rupture and overturning, of a body without symmetry."""
     states = (0.3, "yield", "rupture", "yield of fuse 1")
     analysis = fragility_analysis(TIED, PULSES, LEVELS, "housner", limit_states=states)
     counts = {name: np.zeros(len(LEVELS), int) for name in analysis.counts}
@@ -84,8 +85,9 @@ def test_uplift_accelerations():
         fragility_analysis(pulled, PULSES, LEVELS, "housner")
 
 
-@pytest.mark.verifies("limit", "restraints without effect: the study of the free body", within="1e-9 of rotations")
+@pytest.mark.verifies("closed form", "a tendon without stiffness and a damper without coefficient", within="1e-9")
 def test_restraints_without_effect():
+    """The study of the free body, which an elastic tendon changes."""
     nothing = rk.Restrained(
         WALL, [rk.Tendon(x=0.5, stiffness=0.0), rk.ViscousDamper(x=0.1, length=0.5, coefficient=0.0)]
     )
@@ -96,7 +98,9 @@ def test_restraints_without_effect():
     assert not np.array_equal(elastic.responses.outcome, free.responses.outcome)
 
 
+@pytest.mark.verifies("computed anew", "single histories just below and above", within="1e-6")
 def test_the_smallest_overturning_acceleration_separates_single_histories():
+    """A prestressed wall overturns above the minimum, which exceeds the minimum of the free wall."""
     tied = rk.Restrained(WALL, [rk.Tendon(x=0.5, stiffness=5e4, prestress=5e3)])
     pulse = rk.pulses.sine(1.0, 1.4)
     lowest = minimum_overturning_acceleration(tied, pulse, "housner", samples=40)
@@ -109,7 +113,9 @@ def test_the_smallest_overturning_acceleration_separates_single_histories():
     assert lowest.minimum > free.minimum
 
 
+@pytest.mark.verifies("damage")
 def test_what_a_study_with_restraints_refuses():
+    """Other bodies, dimensions, stretched time and unknown states are refused in one sentence."""
     tied = rk.Restrained(WALL, [rk.Tendon(x=0.5, stiffness=5e4)])
     other = rk.Restrained(WALL, [rk.Tendon(x=0.5, stiffness=6e4)])
     pulse = PULSES[0]
@@ -130,7 +136,9 @@ def test_what_a_study_with_restraints_refuses():
         rk.fragility(tied, PULSES, LEVELS, limit_states=["yielding"])
 
 
+@pytest.mark.verifies("behaviour")
 def test_curves_of_restraints_stay_as_fitted_and_files_with_an_order_refuse_them(tmp_path):
+    """States of restraints have no order with states of the rotation."""
     analysis = fragility_analysis(TIED, PULSES, np.geomspace(3.0, 20.0, 12), "housner", limit_states=[0.2, "rupture"])
     model = model_of(analysis, "wall")
     curve = next(curve for curve in model.curves if curve.state == "rupture")
@@ -140,8 +148,9 @@ def test_curves_of_restraints_stay_as_fitted_and_files_with_an_order_refuse_them
     to_csv(model_of(analysis, "wall", limit_states=["overturned"]), tmp_path / "wall.csv", "fema-p58")
 
 
-@pytest.mark.verifies("second route", "single histories with the sampled coefficients", within="1e-9")
+@pytest.mark.verifies("computed anew", "single histories with the sampled coefficients", within="1e-9")
 def test_one_coefficient_is_sampled_for_a_history():
+    """Each history has its own coefficient; a coefficient for each impact is refused."""
     law = SampledRestitution.normal(0.85, 0.03, seed=3)
     rotations = fragility_analysis(TIED, PULSES[:2], LEVELS[2:4], law).responses.rotation
     fixed = fragility_analysis(TIED, PULSES[:2], LEVELS[2:4], 0.85).responses.rotation
@@ -155,7 +164,9 @@ def test_one_coefficient_is_sampled_for_a_history():
         fragility_analysis(TIED, PULSES, LEVELS, RandomRestitution.normal(0.8, 0.02, seed=1))
 
 
+@pytest.mark.verifies("behaviour")
 def test_the_identity_of_histories_contains_the_restraints():
+    """Another stiffness gives another key of the histories, and the same stiffness the same key."""
     keys = set()
     for stiffness in (5e4, 6e4, 5e4):
         tied = rk.Restrained(WALL, [rk.Tendon(x=0.5, stiffness=stiffness)])
@@ -164,7 +175,9 @@ def test_the_identity_of_histories_contains_the_restraints():
     assert "body" not in study_settings(TIED, {}).stated  # which are the options of a study
 
 
+@pytest.mark.verifies("behaviour")
 def test_an_overturned_body_has_reached_every_state():
+    """Also the yield of a restraint that cannot yield."""
     analysis = fragility_analysis(TIED, PULSES[-1:], [40.0], "housner", limit_states=["rupture of tendon 1"])
     assert analysis.responses.overturned.all()
     assert analysis.responses.exceed(LimitState("", damage="yield", restraint="viscous damper 1")).all()

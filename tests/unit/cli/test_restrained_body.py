@@ -8,7 +8,7 @@ BLOCK = 'units = "m"\n[block]\nwidth = 1.0\nheight = 6.0\ndepth = 1.0\nmass = 40
 PIER = BLOCK + '[[restraint]]\nkind = "tendon"\nx = 0.5\nstiffness = 500e3\nprestress = 20e3\n'
 DOCUMENT = PIER.replace("[block]", "[body.block]").replace("[[restraint]]", "[[body.restraint]]")
 DOCUMENT = DOCUMENT.replace('units = "m"', '[body]\nunits = "m"') + "[response]\nfriction = 0.5\n"
-REFUSAL = "This analysis does not support restraints. Remove [[restraint]]."
+REFUSAL = "This analysis does not support restraints. Remove [[restraint]]"
 
 
 @pytest.mark.parametrize("options", [(), ("--recommend",), ("--details",)])
