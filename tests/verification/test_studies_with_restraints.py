@@ -128,10 +128,16 @@ def test_what_a_study_with_restraints_refuses():
             rk.overturning_map(tied, pulse, ("pga", [2.0, 4.0]), (axis, [0.5, 0.6]))
     with pytest.raises(InvalidValueError, match="cannot vary for a body with restraints"):
         rk.overturning_map(tied, pulse, ("pga", [2.0, 4.0]), ("pgv", [0.5, 0.6]))
-    with pytest.raises(InvalidValueError, match="no such restraint"):
-        rk.fragility(tied, PULSES, LEVELS, limit_states=["yield of fuse 1"])
-    with pytest.raises(InvalidValueError, match="no such restraint"):
-        rk.fragility(WALL, PULSES, LEVELS, limit_states=["rupture"])
+    for body, state in (
+        (tied, "yield of fuse 1"), (tied, "yield"), (TIED, "yield of viscous damper 1"), (TIED, "rupture of fuse 1"),
+        (WALL, "rupture"),
+    ):  # fmt: skip
+        with pytest.raises(InvalidValueError, match="no restraint of the body can reach"):
+            rk.fragility(body, PULSES, LEVELS, limit_states=[state])
+    with pytest.raises(InvalidValueError, match="must be rotations / alpha"):
+        rk.fragility(TIED, PULSES, LEVELS, limit_states=["yield of "])
+    with pytest.raises(InvalidValueError, match="without commas"):
+        rk.Fuse(x=0.5, stiffness=1e6, name="left, lower")
     with pytest.raises(InvalidValueError, match="must be rotations / alpha"):
         rk.fragility(tied, PULSES, LEVELS, limit_states=["yielding"])
 
@@ -176,8 +182,34 @@ def test_the_identity_of_histories_contains_the_restraints():
 
 
 @pytest.mark.verifies("behaviour")
+def test_a_body_that_friction_holds_has_rocked():
+    """Stuck dampers hold the wall tilted: each lesser state has at least the counts of a worse one."""
+    dampers = [rk.FrictionDamper(x=x, length=0.5, slip_force=12e3) for x in (0.0, 1.0)]
+    analysis = fragility_analysis(
+        rk.Restrained(WALL, dampers), PULSES[1:4], [4.0, 6.0, 8.0, 10.0], "housner", limit_states=[0.1]
+    )
+    assert np.any(analysis.responses.outcome == rk.Outcome.HELD.code)
+    assert np.all(analysis.counts["rocking"] >= analysis.counts["rotation > 0.1 alpha"])
+    assert analysis.uplift.contradictions == 0
+    assert "not computed" in analysis.responses.contact
+
+
+@pytest.mark.verifies("behaviour")
+def test_a_curve_of_overturning_above_the_curve_of_yield_is_noted():
+    """An overturned body has reached yield, but separately fitted curves may cross; overturning stays the last."""
+    tied = rk.Restrained(WALL, [rk.Tendon(**TENDON | {"yield_force": 32e3})])
+    pulses = [rk.pulses.sine(1.0, period) for period in np.linspace(0.5, 3.0, 12)]
+    levels = np.geomspace(2.8, 14.0, 8)
+    model = model_of(fragility_analysis(tied, pulses, levels, "housner", limit_states=["yield"]), "wall")
+    yielded, overturned = (next(c for c in model.curves if c.state == name) for name in ("yield", "overturned"))
+    assert np.any(overturned.probability(levels) > yielded.probability(levels) + 0.01)
+    assert "The curves of restraints stay as fitted: at " in model.adjusted
+    assert [curve.state for curve in model.curves][-2:] == ["yield", "overturned"]
+
+
+@pytest.mark.verifies("behaviour")
 def test_an_overturned_body_has_reached_every_state():
-    """Also the yield of a restraint that cannot yield."""
+    """Also the yield of a restraint without a yield force."""
     analysis = fragility_analysis(TIED, PULSES[-1:], [40.0], "housner", limit_states=["rupture of tendon 1"])
     assert analysis.responses.overturned.all()
     assert analysis.responses.exceed(LimitState("", damage="yield", restraint="viscous damper 1")).all()

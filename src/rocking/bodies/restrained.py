@@ -113,7 +113,10 @@ class Restrained:
         Answer
             Results of the body, and the law of each restraint.
         """
-        return self.body.answer(gravity) | {"restraint_laws": [facts_of(restraint) for restraint in self.restraints]}
+        return self.body.answer(gravity) | {
+            "assumed": self.assumed,
+            "restraint_laws": [facts_of(restraint) for restraint in self.restraints],
+        }
 
 
 PLANE_BODIES = (Body, Restrained)

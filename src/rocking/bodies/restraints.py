@@ -60,6 +60,11 @@ class Restraint:
                 "{restraint} needs x, or ground and point", parameter="x", value=self.x,
                 restraint=self.kind.replace("_", " "),
             )  # fmt: skip
+        checks.of_kind("name", self.name, str, "text")
+        if self.name != self.name.strip() or set(self.name) & set(',"\\\n'):
+            raise InvalidValueError(
+                parameter="name", allowed="text without commas, quotation marks and outer spaces", value=self.name
+            )
         self._set("length", checks.within("length", self.length, 0.0, checks.LARGEST, unit="m"))
         if self.x is not None:
             self._set("x", checks.number("x", self.x, "m"))
@@ -87,6 +92,15 @@ class Restraint:
         assert self.ground is not None
         assert self.point is not None
         return self.ground, self.point
+
+    @property
+    def damages(self) -> tuple[str, ...]:
+        """Kinds of damage that the restraint can have: ``yield``, ``rupture``."""
+        limits = {"yield": ("yield_force",), "rupture": ("rupture_elongation", "stroke")}
+        return tuple(
+            damage for damage, names in limits.items()
+            if any(getattr(self, name, math.inf) < math.inf for name in names)
+        )  # fmt: skip
 
     @property
     def constants(self) -> dict[str, Any]:

@@ -81,7 +81,10 @@ class Axis:
     def check(self, question: Question) -> None:
         """Raise an error for a question without this parameter."""
         if self.stage == BODY and isinstance(question.body, Restrained):
-            raise InvalidValueError("{name} cannot vary for a body with restraints", name=self.name)
+            raise InvalidValueError(
+                "{name} cannot vary for a body with restraints", name=self.name,
+                hint="Use pga, scale, amplitude_ratio, restitution, initial_rotation or initial_angular_velocity.",
+            )  # fmt: skip
         if self.stage == TIME:
             question.check_stretching(self.name)
         if self.stage in {AMPLITUDE, VELOCITY} and not question.motion.peak > 0.0:

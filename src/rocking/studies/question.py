@@ -93,7 +93,10 @@ class Question:
     def check_stretching(self, name: str) -> None:
         """Raise an error if time is stretched for restraints, or for a restitution that depends on the speed."""
         if isinstance(self.body, Restrained):
-            raise InvalidValueError("{name} cannot vary for a body with restraints", name=name)
+            raise InvalidValueError(
+                "{name} cannot vary for a body with restraints", name=name,
+                hint="Use pga, scale, amplitude_ratio, restitution, initial_rotation or initial_angular_velocity.",
+            )  # fmt: skip
         if self.law.kind in {1, -1}:
             raise InvalidValueError(
                 "{name} stretches the time of the motion, which needs a restitution that does not depend on the speed "

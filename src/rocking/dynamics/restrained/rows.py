@@ -64,6 +64,7 @@ class RowsWithRestraints:
         engine, results, restraints = run_rows(
             histories, self.motions, self.settings, engine=self.engine, threads=threads
         )
+        results["residual_rotation"][results["still_rocking"] == 1] = np.nan
         bits = 2 ** np.arange(len(self.settings.body.restraints))
         results["yielded_restraints"] = (restraints["yield_count"] > 0.0) @ bits
         results["broken_restraints"] = (restraints["is_broken"] > 0.0) @ bits

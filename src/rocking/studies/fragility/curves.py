@@ -25,7 +25,7 @@ CLAIMS = ("method", "verdict", "interval_method")  # texts that are exported wit
 Crossing = Literal["keep-uplift", "common-dispersion", "refuse"]
 
 COMMON = "common-dispersion"  # method of curves with a common dispersion
-ROCKING = NAMED["rocking"].name
+ROCKING, OVERTURNED = NAMED["rocking"].name, NAMED["overturning"].name
 STATES = Option("fragility.limit_states")
 TOLERANCE = 1e-6  # largest allowed excess of the probability of a worse state over that of a lesser state in a file [-]
 
@@ -320,16 +320,30 @@ def with_evidence(
 def without_crossing(model: FragilityModel, crossing_curves: Crossing = "keep-uplift") -> FragilityModel:
     """Return the model with curves that do not cross, by one of the treatments. With "refuse", it is unchanged."""
     own = tuple(curve for curve in model.curves if damage_state(curve.state))
-    if own and len(own) < len(model.curves):  # the states of restraints are in no order with those of the rotation
-        ordered = replace(model, curves=tuple(curve for curve in model.curves if curve not in own))
-        joined = without_crossing(ordered, crossing_curves)
-        return replace(joined, curves=(*joined.curves, *own))
+    if own:  # they have no order with the rotations; an overturned body has reached all of them
+        return _with_restraints(model, own, crossing_curves)
     match check_crossing(crossing_curves):
         case "common-dispersion" if len(model.curves) > 1:
             return with_common_dispersion(model)
         case "keep-uplift" if (excess := crosses(model)) is not None:
             return _keeping_uplift(model, excess)
     return model
+
+
+def _with_restraints(
+    model: FragilityModel, own: tuple[FragilityCurve, ...], crossing_curves: Crossing
+) -> FragilityModel:
+    """Return the model with its curves of the rotation treated, and the curves of restraints as fitted."""
+    ordered = tuple(curve for curve in model.curves if curve not in own)
+    if not ordered:
+        return model
+    joined = without_crossing(replace(model, curves=ordered), crossing_curves)
+    last = joined.curves[-1]
+    excesses = [crosses(replace(joined, curves=(curve, last))) for curve in own if last.state == OVERTURNED]
+    text = "The curves of restraints stay as fitted: {excess}."
+    notes = [Message(text, {"excess": excess.describe(joined)}) for excess in excesses if excess is not None]
+    adjusted = Message.joined(filter(None, [joined.adjusted, *notes])) if notes else joined.adjusted
+    return replace(joined, curves=(*joined.curves[:-1], *own, last), adjusted=adjusted)
 
 
 def _keeping_uplift(model: FragilityModel, excess: "Excess") -> FragilityModel:
@@ -473,7 +487,7 @@ class Excess:
 def largest_excess(model: FragilityModel, lowest: float, highest: float) -> Excess | None:
     """Return the largest excess of neighbouring curves between two levels; None if the curves do not cross."""
     largest = None
-    for lesser, worse in pairwise(curve for curve in model.curves if not damage_state(curve.state)):
+    for lesser, worse in pairwise(model.curves):
         medians, dispersions = np.array([(c.median, c.dispersion) for c in (lesser, worse)]).T
         with np.errstate(over="ignore", under="ignore"):
             extremes = np.exp(difference_extremes(np.log(medians), dispersions))

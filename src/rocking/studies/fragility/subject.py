@@ -21,7 +21,7 @@ from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.dynamics.restrained.settings import RestrainedStudySettings
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, extra
-from rocking.messages import plain_texts
+from rocking.messages import Message, plain_texts
 from rocking.motions.intensity import IntensityMeasure, RockingScale, measure
 from rocking.motions.pulse import Motion
 from rocking.motions.summary import GROUND, provenance_of, support_of, words_on
@@ -42,7 +42,7 @@ Motions = MotionSet | Motion | Sequence[Motion]
 Progress = Callable[[int], None] | None
 
 
-_ROCKED = Outcome.ROCKED, Outcome.ROCKED_AND_SLID, Outcome.FLEW
+_ROCKED = Outcome.ROCKED, Outcome.ROCKED_AND_SLID, Outcome.FLEW, Outcome.HELD
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,12 +168,13 @@ class Subject:
         return {"restraints": json.dumps(facts)} if facts else {}
 
     def check_states(self, states: "Sequence[LimitState]") -> None:
-        """Raise an error for a state of restraints that the body does not have."""
+        """Raise an error for a state that no restraint of the body can reach."""
         for state in states:
-            if state.damage and (state.restraint or next(iter(self.restraints), "")) not in self.restraints:
+            able = [item.name for item in self._restraints if state.damage in item.damages]
+            if state.damage and not [name for name in able if name == (state.restraint or name)]:
                 raise InvalidValueError(
-                    "the body has no such restraint: {value}; its restraints are {names}", parameter="limit_states",
-                    value=state.name, names=", ".join(self.restraints) or "none",
+                    "no restraint of the body can reach {value}; {damage} is possible for {names}",
+                    parameter="limit_states", value=state.name, damage=state.damage, names=", ".join(able) or "none",
                 )  # fmt: skip
 
     @property
@@ -268,8 +269,12 @@ def limit_states_of(levels: Sequence[float | str] = (0.5,)) -> tuple[LimitState,
 
 def damage_state(name: str) -> LimitState | None:
     """Return the state of restraints with a name; None for another name."""
-    damage, _, restraint = name.partition(" of ")
-    return LimitState(name, damage=damage, restraint=restraint) if damage in DAMAGES else None
+    damage, of, restraint = name.partition(" of ")
+    return (
+        LimitState(name, damage=damage, restraint=restraint)
+        if damage in DAMAGES and bool(of) == bool(restraint)
+        else None
+    )
 
 
 def _rotations(levels: Any) -> tuple[LimitState, ...]:
@@ -323,6 +328,8 @@ class Responses:
     @property
     def contact(self) -> str:
         """Number of histories with a tensile contact force, as a sentence; empty if 0."""
+        if self.restraints:
+            return Message("the contact force is not computed in studies of bodies with restraints")
         return "" if self.lost is None else contact_words(self.lost)
 
     @property
