@@ -92,7 +92,7 @@ def test_in_german_with_a_plan(printed, objects):
     """A language by --set: German sentences, decimal commas, and what to do first; of none, English and said so."""
     out = printed(objects, "--pga", "0.3g", *FEW, "--set", "inventory.language=de")
     for words in (
-        "1  ROT      tall vase: Steht still bis 0,13 g",
+        "1  ROT         ROT      ROT      tall vase: Steht still bis 0,13 g",
         "Standfläche auf jeder Seite",
     ):
         assert words in out
