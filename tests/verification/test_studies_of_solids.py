@@ -507,7 +507,7 @@ def test_an_inventory_of_solids(records, answered):
         assert fell[row["statue"], j] == (one.overturned.values > 0).sum()
     assert slid[row["held"]].sum() == 0
     assert found.not_assessed.values.tolist() == ["gone", "both"]  # a friction that cannot be is left aside, and said
-    assert ["does not exist" in found.reason.values[0], "Clear" in found.reason.values[1]] == [True, True]
+    assert ["no such file" in found.reason.values[0], "Clear" in found.reason.values[1]] == [True, True]
 
     clean = "\n".join(line for line in LIST.splitlines() if line.split(",")[0] not in {"gone", "both"})
     (folder / "clean.csv").write_text(clean)
