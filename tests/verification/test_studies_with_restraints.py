@@ -10,7 +10,8 @@ from rocking.dynamics.mechanics import study_settings
 from rocking.errors import InvalidValueError
 from rocking.studies import MotionList, minimum_overturning_acceleration, minimum_overturning_accelerations
 from rocking.studies.fragility import fragility_analysis, model_of, to_csv
-from rocking.studies.fragility.subject import LimitState, Subject
+from rocking.studies.fragility.limit_states import LimitState
+from rocking.studies.fragility.subject import Subject
 from rocking.studies.sensitivity import SampledRestitution
 
 pytestmark = pytest.mark.verifies(room="studies")

@@ -140,7 +140,8 @@ def _table(arguments: "Arguments") -> tuple[dict[str, Any], str]:
     """Return the table [fragility], and the unit of the given levels, in which medians are printed."""
     from rocking import checks
     from rocking.motions.intensity import measure as measure_of
-    from rocking.studies.fragility.subject import checked_levels, limit_states_of
+    from rocking.studies.fragility.limit_states import limit_states_of
+    from rocking.studies.fragility.subject import checked_levels
 
     kind, levels, states, scale = (arguments.options[name] for name in ("analysis", "levels", "limit_states", "scale"))
     checks.one_of("--analysis", kind, ANALYSES)
@@ -186,7 +187,7 @@ def _table(arguments: "Arguments") -> tuple[dict[str, Any], str]:
 
 def _states(text: str) -> list[float | str]:
     """Return limit states: rotations / slenderness angle [-], then names."""
-    from rocking.studies.fragility.subject import NAMED, damage_state
+    from rocking.studies.fragility.limit_states import NAMED, damage_state
 
     entries = [entry.strip() for entry in text.split(",")]
     names = [entry for entry in entries if entry in NAMED or damage_state(entry)]

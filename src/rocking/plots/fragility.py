@@ -27,7 +27,7 @@ from rocking.plots.style import (
     stroke,
 )
 from rocking.studies.fragility.incremental_dynamic_analysis import WIDE, IncrementalDynamicAnalysis
-from rocking.studies.fragility.subject import damage_state
+from rocking.studies.fragility.limit_states import damage_state
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -23,7 +23,8 @@ from rocking.studies import (
     overturning_map,
     rocking_spectrum,
 )
-from rocking.studies.fragility.subject import checked_levels, limit_states_of
+from rocking.studies.fragility.limit_states import limit_states_of
+from rocking.studies.fragility.subject import checked_levels
 from rocking.studies.sensitivity.restitutions import named_restitutions
 
 BLOCK = rk.Block(width=0.4, height=1.6)

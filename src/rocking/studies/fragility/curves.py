@@ -16,7 +16,8 @@ from rocking.motions.intensity import exchange_unit
 from rocking.statistics.goodness import STATISTICS, Agreement, Ends, Repeated, agreement_of, ends_of, repeated_of
 from rocking.statistics.lognormal import LognormalFit, difference_extremes, lognormal_probability
 from rocking.statistics.ordered_probit import nested_curves
-from rocking.studies.fragility.subject import NAMED, Subject, checked_levels, damage_state
+from rocking.studies.fragility.limit_states import NAMED, damage_state
+from rocking.studies.fragility.subject import Subject, checked_levels
 
 if TYPE_CHECKING:
     import xarray as xr

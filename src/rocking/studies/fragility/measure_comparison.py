@@ -16,7 +16,8 @@ from rocking.motions.intensity import measure
 from rocking.statistics.least_squares import regression
 from rocking.studies.fragility.cloud_analysis import MIN_ROTATION, CloudAnalysis, checked_min_rotation
 from rocking.studies.fragility.curves import curve_of
-from rocking.studies.fragility.subject import NAMED, Progress, fits_of
+from rocking.studies.fragility.limit_states import NAMED
+from rocking.studies.fragility.subject import Progress, fits_of
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -17,8 +17,9 @@ from rocking.studies.fragility.incremental_dynamic_analysis import (
     check_repeatable,
     overturning_intervals,
 )
+from rocking.studies.fragility.limit_states import LimitState, limit_states_of
 from rocking.studies.fragility.multiple_stripe_analysis import MultipleStripeAnalysis
-from rocking.studies.fragility.subject import LimitState, Progress, Responses, Subject, checked_levels, limit_states_of
+from rocking.studies.fragility.subject import Progress, Responses, Subject, checked_levels
 from rocking.studies.histories import Product, results_of
 
 ANALYSES = ("stripes", "cloud", "incremental")

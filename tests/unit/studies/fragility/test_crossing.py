@@ -14,7 +14,7 @@ from rocking.plots.fragility import fragility_picture
 from rocking.studies import SyntheticSet, fragility_analysis
 from rocking.studies.fragility import FragilityCurve, FragilityModel, fema_p58_table, model_of, to_nrml
 from rocking.studies.fragility.curves import crosses, shown_curves, without_crossing
-from rocking.studies.fragility.subject import limit_states_of
+from rocking.studies.fragility.limit_states import limit_states_of
 
 pytestmark = pytest.mark.verifies(room="studies")
 

@@ -12,8 +12,9 @@ from rocking import conventions
 from rocking.dynamics import RockingParameters, RockingSide
 from rocking.errors import InvalidValueError
 from rocking.studies import MotionSet, fragility_analysis
+from rocking.studies.fragility.limit_states import limit_states_of
 from rocking.studies.fragility.question import FragilityQuestion
-from rocking.studies.fragility.subject import Responses, Subject, limit_states_of, uplift_check
+from rocking.studies.fragility.subject import Responses, Subject, uplift_check
 
 BLOCK = rk.Block(width=0.5, height=2.0)
 
