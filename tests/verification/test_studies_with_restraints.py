@@ -172,6 +172,17 @@ def test_one_coefficient_is_sampled_for_a_history():
 
 
 @pytest.mark.verifies("behaviour")
+def test_an_assumed_density_affects_the_rotations_of_a_body_with_restraints():
+    """In the assumptions and in the answer; of the free body it does not."""
+    free = rk.Block(width=1.0, height=6.0)
+    tied = rk.Restrained(free, rk.Tendon(x=0.5, stiffness=5e5))
+    for texts in (tied.assumed, tied.answer()["assumed"]):
+        assert any("with restraints it affects rotations" in text for text in texts)
+        assert not any("not rotations" in text for text in texts)
+    assert any("not rotations" in text for text in free.assumed)
+
+
+@pytest.mark.verifies("behaviour")
 def test_the_identity_of_histories_contains_the_restraints():
     """Another stiffness gives another key of the histories, and the same stiffness the same key."""
     keys = set()

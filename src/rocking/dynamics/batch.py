@@ -36,10 +36,8 @@ class Batch:
         threads: int | None = None,
     ) -> tuple[Arrays, dict[str, int]]:
         """Return arrays by the keys of `study_columns`, and numbers of steps (empty for the reference engine)."""
-        worker_count, columns = (
-            thread_count(self.threads if threads is None else threads),
-            self._mechanics.study_columns,
-        )
+        worker_count = thread_count(self.threads if threads is None else threads)
+        columns = self._mechanics.study_columns
         return run_rows(self._runner, self.law, count, rows, worker_count, progress, columns=columns)
 
     @property

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from rocking import checks, plausibility
-from rocking.bodies import PLANE_BODIES, Block, Restrained
+from rocking.bodies import PLANE_BODIES, Block
 from rocking.conventions import FEET, FloatArray
 from rocking.dynamics.impact_laws import ConstantRestitution
 from rocking.errors import InvalidValueError
@@ -80,11 +80,8 @@ class Axis:
 
     def check(self, question: Question) -> None:
         """Raise an error for a question without this parameter."""
-        if self.stage == BODY and isinstance(question.body, Restrained):
-            raise InvalidValueError(
-                "{name} cannot vary for a body with restraints", name=self.name,
-                hint="Use pga, scale, amplitude_ratio, restitution, initial_rotation or initial_angular_velocity.",
-            )  # fmt: skip
+        if self.stage == BODY:
+            question.check_restraints(self.name)
         if self.stage == TIME:
             question.check_stretching(self.name)
         if self.stage in {AMPLITUDE, VELOCITY} and not question.motion.peak > 0.0:

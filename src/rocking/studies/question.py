@@ -90,13 +90,17 @@ class Question:
         results["peak_ratio"] = peak_ratio(results["peak_rotation"], values["alpha_right"], values["alpha_left"])
         return results, work
 
-    def check_stretching(self, name: str) -> None:
-        """Raise an error if time is stretched for restraints, or for a restitution that depends on the speed."""
+    def check_restraints(self, name: str) -> None:
+        """Raise an error for a body with restraints, whose dimensions and motion in time do not vary."""
         if isinstance(self.body, Restrained):
             raise InvalidValueError(
                 "{name} cannot vary for a body with restraints", name=name,
                 hint="Use pga, scale, amplitude_ratio, restitution, initial_rotation or initial_angular_velocity.",
             )  # fmt: skip
+
+    def check_stretching(self, name: str) -> None:
+        """Raise an error if time is stretched for restraints, or for a restitution that depends on the speed."""
+        self.check_restraints(name)
         if self.law.kind in {1, -1}:
             raise InvalidValueError(
                 "{name} stretches the time of the motion, which needs a restitution that does not depend on the speed "

@@ -88,8 +88,8 @@ def test_the_command_and_the_door_say_the_same(tmp_path, answered):
     labelled = rk.inventory(path, "point-source", pga="0.3g", count=4, seed=2)
     said = answered("inventory", path, "--synthetic", "point-source", "--pga", "0.3g", "--count", 4, "--seed", 2)
     assert labelled["object"].values.tolist() == [each["name"] for each in said["objects"]]
-    assert labelled["rating"].values.tolist() == [each["rating"] for each in said["objects"]]
-    assert labelled["text"].values.tolist() == [each["text"] for each in said["objects"]]
+    assert labelled["rating"].values.tolist() == [item["rating"] for item in said["objects"]]
+    assert labelled["text"].values.tolist() == [item["text"] for item in said["objects"]]
     assert labelled["not_assessed"].values.tolist() == ["broken"]
     assert labelled["reason"].values.tolist() == [each["reason"] for each in said["not_assessed"]]
 

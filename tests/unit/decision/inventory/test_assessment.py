@@ -157,7 +157,7 @@ def test_model_of_impact_is_flagged(quakes):
     found = assess(items, quakes, restitution=1.0)
     assert found.comparisons == ("housner",)
     assert sum(v.worse.overturned for v in found.verdicts) > sum(v.worse_compared[0].overturned for v in found.verdicts)
-    flagged = [each for each in found.verdicts if each.depends_on_model]
+    flagged = [verdict for verdict in found.verdicts if verdict.depends_on_model]
     assert flagged
     for verdict in found.verdicts:
         note = ranking.model_note(verdict, found)
