@@ -33,7 +33,7 @@ TIED = rk.Restrained(SKEW, RESTRAINTS)
 @pytest.mark.verifies("computed anew", "the same histories, one by one", within="exact counts, 1e-9 of the peak")
 def test_states_of_a_fragility_are_those_of_its_single_histories():
     """Counts of rocking, rotation, yield, rupture and overturning, of a body without symmetry."""
-    states = (0.3, "yield", "rupture", "yield of fuse 1")
+    states = (0.3, "yield", "rupture", "yield of fuse 1", "yield of tendon 1")
     analysis = fragility_analysis(TIED, PULSES, LEVELS, "housner", limit_states=states)
     counts = {name: np.zeros(len(LEVELS), int) for name in analysis.counts}
     for i, pulse in enumerate(PULSES):
@@ -47,13 +47,15 @@ def test_states_of_a_fragility_are_those_of_its_single_histories():
             counts["rotation > 0.3 alpha"][j] += overturned or response.peak_ratio > 0.3
             counts["yield"][j] += overturned or any(row["yield_count"] > 0 for row in rows.values())
             counts["rupture"][j] += overturned or any(row["is_broken"] for row in rows.values())
-            counts["yield of fuse 1"][j] += overturned or rows["fuse 1"]["yield_count"] > 0
+            for name in ("fuse 1", "tendon 1"):
+                counts[f"yield of {name}"][j] += overturned or rows[name]["yield_count"] > 0
             counts["overturned"][j] += overturned
     assert {name: values.tolist() for name, values in analysis.counts.items()} == {
         name: values.tolist() for name, values in counts.items()
     }
     assert len({tuple(values) for values in counts.values()}) >= 4  # the states differ
     assert counts["rupture"].tolist() != counts["overturned"].tolist()
+    assert counts["yield of fuse 1"].tolist() != counts["yield of tendon 1"].tolist()
 
 
 @pytest.mark.verifies("closed form", "moments of weight, prestress and slip about both feet", within="1e-12")
