@@ -128,8 +128,12 @@ def facts_of(restraint: Restraint) -> dict[str, Any]:
     return {
         "restraint": restraint.name, "force_law": restraint.law, "law_source": restraint.source,
         "law_domain": restraint.domain, "ground_point": restraint.ends[0], "body_point": restraint.ends[1],
-        "law_constants": ", ".join(f"{name} {value}" for name, value in restraint.constants.items()),
+        "law_constants": ", ".join(f"{name} {_short(value)}" for name, value in restraint.constants.items()),
     }  # fmt: skip
+
+
+def _short(value: Any) -> str:
+    return f"{value:.12g}" if isinstance(value, float) else str(value)
 
 
 def _named(restraints: list[Restraint]) -> list[Restraint]:

@@ -94,6 +94,7 @@ class ResponseAnswer:
     others: dict[str, Any] = field(default_factory=dict)  # response of each model, or the reason for its absence
     is_stated: bool = False  # True if the input states the restitution
     details: bool = False  # True to show every impact and model
+    name: str = ""  # name of the body
 
     @property
     def _friction(self) -> dict[str, float]:
@@ -156,7 +157,9 @@ class ResponseAnswer:
         page.facts(_sources(self._components.values()) if self.details else (), 8)
         page.warn(answer["body"].values.get("repairs", ()))
         if not self.details:
-            page.line("Impacts, energy and sources: --details    Files: --output response.csv, --output response.html")
+            page.line(
+                "Impacts, energy, sources: --details    Files: -o rows.csv, -o animation.html, -o report=report.pdf"
+            )
 
     def _show_tables(self, page: Page, answer: Answer) -> None:
         for name, (title, columns) in _TABLES.items() if self.details else ():

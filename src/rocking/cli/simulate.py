@@ -24,7 +24,7 @@ from rocking.messages import Message
 from rocking.motions.components import leading
 from rocking.motions.summary import MotionSummary, peak_names, support_of
 from rocking.outcome import Outcome
-from rocking.spec.bodies import any_body_of
+from rocking.spec.bodies import any_body_of, name_of
 from rocking.spec.construction import motions_of
 from rocking.spec.documents.response import ResponseDocument, ResponseTable, ResponseTables
 from rocking.spec.fields import Angle
@@ -66,9 +66,14 @@ def _animate(answer: Any, path: Path) -> None:
         )
 
 
+def _report(answer: Any, path: Path) -> None:
+    answer.response.report(path, name=answer.name)
+
+
 EXPORTS = {
     "picture": DRAWN,
     "animation": Export((".html", ".gif", ".glb"), _animate),
+    "report": Export((".pdf", ".html"), _report, "matplotlib"),
     "csv": Export((".csv",), lambda answer, path: answer.response.to_csv(path)),
     "mat": Export((".mat",), lambda answer, path: answer.response.to_mat(path)),
     "netcdf": Export((".nc",), lambda answer, path: answer.response.to_netcdf(path)),
@@ -133,6 +138,7 @@ def simulate(
     with bar("history", quiet=as_json):
         is_stated = "restitution" in document.model_fields_set
         answer = answer_of(problem, display, listed=stated, is_stated=is_stated, details=details)
+    answer = replace(answer, name=name_of(document.body, file.parent if file else Path()))
     deliver(answer, exports, as_json=as_json)
 
 

@@ -4,7 +4,6 @@ import math
 import warnings
 from dataclasses import dataclass, replace
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -505,32 +504,6 @@ class Response(ResponseBase):
             "scale": self.scale,
             "random_stream": self.stream,
         }
-
-    def report(self, path: str | Path, **options: Any) -> Path:
-        """Write a report with pictures: body, energy loss at impact, ground motion, response.
-
-        Parameters
-        ----------
-        path : str or Path
-            A document (.pdf), or a web page in one file (.html).
-        **options
-            Options of `rocking.reports.report`: name, date, friction.
-
-        Returns
-        -------
-        Path
-            The file.
-
-        Raises
-        ------
-        InvalidValueError
-            If the path has another extension.
-        MissingExtraError
-            If matplotlib, and typst or jinja2, are not installed.
-        """
-        from rocking.reports import report
-
-        return report(self, path, **options)
 
 
 # products of p and a time: step between samples under a pulse, time after the motion, time on ground at rest

@@ -248,6 +248,32 @@ class ResponseBase(Exported):
         response: Any = self
         return animate_html(response, path) if suffix == ".html" else animate_gif(response, path, **options)
 
+    def report(self, path: str | Path, **options: Any) -> Path:
+        """Write a report with pictures: body, energy loss at impact, ground motion, response, restraints.
+
+        Parameters
+        ----------
+        path : str or Path
+            A document (.pdf), or a web page in one file (.html).
+        **options
+            Options of `rocking.reports.report`: name, date; friction for a response without friction and restraints.
+
+        Returns
+        -------
+        Path
+            The file.
+
+        Raises
+        ------
+        InvalidValueError
+            If the path has another extension, or the mechanics has no report.
+        MissingExtraError
+            If matplotlib, and typst or jinja2, are not installed.
+        """
+        from rocking.reports import report
+
+        return report(self, path, **options)
+
     def _times_within(self, time: Any, end: float) -> FloatArray:
         """Return times between 0 and an end [s]. Raise an error if a time is outside by more than rounding."""
         times = checks.real_array("time", time, "s")

@@ -5,12 +5,24 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rocking.bodies import Block, Body, MassPoints, Section
+from rocking.bodies import Block, Body, MassPoints, Restrained, Section
 from rocking.conventions import FloatArray, Foot
 from rocking.evidence._coefficient_table import CALIBRATED, CoefficientRow
 from rocking.evidence.measurements import all_measurements
 from rocking.plots.evidence import R, draw_calibrated, draw_measurements
-from rocking.plots.style import DASHED, DOUBLE, GREY, INK, PALE, SINGLE, in_journal_style, model_styles, new_figure
+from rocking.plots.style import (
+    COLORS,
+    DASHED,
+    DOUBLE,
+    GREY,
+    INK,
+    PALE,
+    SINGLE,
+    in_journal_style,
+    legend_above,
+    model_styles,
+    new_figure,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -19,12 +31,12 @@ if TYPE_CHECKING:
 
 
 @in_journal_style
-def body_picture(body: Body) -> "Figure":
-    """Draw a body on its ground: outline, densities, feet, centre, semi-diagonals.
+def body_picture(body: Body | Restrained) -> "Figure":
+    """Draw a body on its ground: outline, densities, feet, centre of mass, semi-diagonals, restraints.
 
     Parameters
     ----------
-    body : Body
+    body : Body or Restrained
         The body.
 
     Returns
@@ -33,7 +45,11 @@ def body_picture(body: Body) -> "Figure":
         One panel.
     """
     figure, (axes,) = new_figure(SINGLE, 3.4)
-    _body(axes, body)
+    if isinstance(body, Restrained):
+        _body(axes, body.body)
+        _restraints(axes, body)
+    else:
+        _body(axes, body)
     return figure
 
 
@@ -116,6 +132,17 @@ def _body(axes: "Axes", body: Body) -> None:
     axes.annotate("C", (x, y), (4, 3), textcoords="offset points", fontsize=7, zorder=5)
     axes.set(xlabel="x [m]", ylabel="y [m]")
     axes.locator_params(nbins=4)
+
+
+def _restraints(axes: "Axes", body: Restrained) -> None:
+    for k, restraint in enumerate(body.restraints):
+        (x, z), (x_body, z_body) = restraint.ends
+        axes.plot(
+            [x, x_body], [body.body.ground + z, body.body.ground + z_body], "o-", color=COLORS[k % len(COLORS)],
+            linewidth=1.4, markersize=3.5, zorder=6, label=restraint.name,
+        )  # fmt: skip
+    if body.restraints:
+        legend_above(axes, 2)
 
 
 def outlines(body: Body) -> "list[tuple[Path, float]]":

@@ -10,6 +10,7 @@ from rocking import checks
 from rocking.decision.assessment import BodyAssessment
 from rocking.decision.prediction import Prediction
 from rocking.dynamics.response import Response
+from rocking.dynamics.restrained.response import RestrainedResponse
 from rocking.errors import InvalidValueError
 from rocking.identification import Identification
 from rocking.reports._assessment import assessment_content
@@ -17,12 +18,14 @@ from rocking.reports._identification import identification_content, trials_conte
 from rocking.reports._predictions import prediction_content, validation_content
 from rocking.reports.document import Content, write_report
 from rocking.reports.response_document import response_content
+from rocking.reports.restrained_document import restrained_content
 from rocking.spec.identification import IdentifiedTrials
 from rocking.spec.validation import FolderValidation
 from rocking.tables import target_of
 
 _CONTENTS: dict[type, Callable[..., Content]] = {
     Response: response_content,
+    RestrainedResponse: restrained_content,
     BodyAssessment: assessment_content,
     Prediction: prediction_content,
     FolderValidation: validation_content,
@@ -37,7 +40,8 @@ def report(result: Any, path: str | Path, *, name: str = "", date: str | None = 
 
     Parameters
     ----------
-    result : Response, BodyAssessment, Prediction, FolderValidation, Identification or IdentifiedTrials
+    result : Response, RestrainedResponse, BodyAssessment, Prediction, FolderValidation, Identification or \
+IdentifiedTrials
         Result of `rocking.simulate` or `rocking.free_rocking` without friction, of `rocking.assess`,
         `rocking.predict` or `rocking.identify`, or of the commands for folders of trials.
     path : str or Path
@@ -47,8 +51,8 @@ def report(result: Any, path: str | Path, *, name: str = "", date: str | None = 
     date : str, optional
         Printed date of the report. The default is today; an empty text means no date.
     **options
-        For a response ``friction``, the coefficient of friction compared with the friction demand [-]. For an
-        assessment ``project`` and ``author``, printed at the top and at the signature.
+        For a response without restraints ``friction``, the coefficient of friction compared with the friction demand
+        [-]. For an assessment ``project`` and ``author``, printed at the top and at the signature.
 
     Returns
     -------

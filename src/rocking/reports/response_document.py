@@ -4,12 +4,15 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from rocking import checks
 from rocking.answers import AnswerRows, Display
 from rocking.bodies import Body
 from rocking.bodies.body import assumed_rows
 from rocking.conventions import DEFAULT_FRICTION, Assumed, Foot, given_or_assumed
 from rocking.dynamics.response import Response
+from rocking.dynamics.response_base import ResponseBase
 from rocking.errors import InvalidValueError
 from rocking.evidence._coefficient_table import CALIBRATED
 from rocking.motions.intensity import Measure
@@ -75,27 +78,36 @@ def response_document(results: ResponseReport) -> Document:
     gravity = results.impact.gravity
     sections = [
         ReportSection("The body", [Pair(body, body_table("", results.impact.body, gravity))]),
-        ReportSection("Energy loss at an impact", _impact(results)),
-        ReportSection("The ground motion", _ground(results)),
+        ReportSection("Energy loss at an impact", impact_blocks(results.impact)),
+        ReportSection("The ground motion", ground_blocks(results.motion, results.measures)),
         ReportSection("The response", _response(results)),
         ReportSection("How to repeat the computation", _repetition(results, first)),
     ]
     about = ", ".join([SOFTWARE, *([f"inputs {results.fingerprint[:16]}"] if results.fingerprint else [])])
-    ground = "free rocking, ground at rest" if results.motion is None else f"under {results.motion.name}"
-    if first.scale != 1.0:
-        ground = f"{ground}, scaled by {first.scale:g}"
-    subtitle = ground[:1].upper() + ground[1:] + (f". {results.date}" if results.date else "")
+    subtitle = subtitle_of(results.motion, first.scale, results.date)
     return Document(title, subtitle, sections, verdict=_verdict(results), footer=about)
+
+
+def subtitle_of(motion: Motion | None, scale: float, date: str) -> str:
+    """Return the line below the title: the scaled motion and the day."""
+    ground = "Free rocking, ground at rest" if motion is None else f"Under {motion.name}"
+    scaled = f", scaled by {scale:g}" if scale != 1.0 else ""
+    return ground + scaled + (f". {date}" if date else "")
 
 
 def _verdict(results: ResponseReport) -> list[Paragraph]:
     label, first = next(iter(results.responses.items()))
-    summary = first.summary[:1].upper() + first.summary[1:] + "."
-    own = Paragraph(summary, f"With {restitution_words(label)}:", _MARKS.get(first.outcome, "plain"))
+    own = outcome_paragraph(first, label)
     verdict = ModelAgreement.of({restitution_words(label): response for label, response in results.responses.items()})
     if len(results.responses) == 1:
         return [own]
     return [own, Paragraph(verdict.sentence, "", "fair" if verdict.models_differ else "plain")]
+
+
+def outcome_paragraph(response: ResponseBase, label: str) -> Paragraph:
+    """Return the outcome of a response with a restitution, as a sentence in its colour."""
+    summary = response.summary[:1].upper() + response.summary[1:] + "."
+    return Paragraph(summary, f"With {restitution_words(label)}:", _MARKS.get(response.outcome, "plain"))
 
 
 _OF_BODY = (
@@ -110,23 +122,24 @@ def body_table(title: str, body: Body, gravity: float) -> ReportTable:
     return report_table(title, ["quantity", "value"], [lines[0], *assumed_rows(body), *lines[1:]])
 
 
-def _impact(results: ResponseReport) -> list[Block]:
-    tables = [_coefficients(results.impact, foot) for foot in results.impact.tables]
-    rows = [row for table in results.impact.tables.values() for row in table]
+def impact_blocks(impact: ImpactAnswer) -> list[Block]:
+    """Return the coefficients of all models for a body, with their warnings."""
+    tables = [_coefficients(impact, foot) for foot in impact.tables]
+    rows = [row for table in impact.tables.values() for row in table]
     notes = dict.fromkeys(f"{restitution_words(row.name)}: {warning}" for row in rows for warning in row.warnings)
     picture = Picture("coefficients", "All models for this body, compared with the published measurements")
     return [picture, *tables, *(Paragraph(note, "", "fair") for note in notes)]
 
 
-def _ground(results: ResponseReport) -> list[Block]:
-    if results.motion is None:
+def ground_blocks(motion: Motion | None, measures: Mapping[str, Measure]) -> list[Block]:
+    """Return picture, intensity and source of the scaled motion of a response."""
+    if motion is None:
         return [Paragraph("Free rocking: the body starts from an initial rotation, and the ground is at rest.")]
     caption = (
-        f"Acceleration, velocity and displacement of the {support_of(results.motion)}, and the response spectrum for "
+        f"Acceleration, velocity and displacement of the {support_of(motion)}, and the response spectrum for "
         "5 % damping"
     )
-    sources = motion_sources([MotionSummary.of(results.motion)])
-    return [Picture("motion", caption, 74), _measures(results.measures), sources]
+    return [Picture("motion", caption, 74), _measures(measures), motion_sources([MotionSummary.of(motion)])]
 
 
 def _response(results: ResponseReport) -> list[Block]:
@@ -139,26 +152,27 @@ def _response(results: ResponseReport) -> list[Block]:
         blocks += [
             Paragraph(doubt, f"{restitution_words(label)}:", "fair") for doubt in response.doubts(results.friction)
         ]
-    return [*blocks, _impacts(first_label, first)] if first.impacts.size else blocks
+    return [*blocks, impact_table(first_label, first.impacts)] if first.impacts.size else blocks
 
 
 def _repetition(results: ResponseReport, first: Response) -> list[Block]:
     toml = results.toml
     if not toml:
-        return [Paragraph(f"{SOFTWARE}.", "Software"), Paragraph(_method(first), "Method")]
+        return [Paragraph(f"{SOFTWARE}.", "Software"), Paragraph(method_words(first, first.energy.closure), "Method")]
     if len(toml) > _LONGEST_LISTING:
         toml = toml[:_LONGEST_LISTING] + "\n# ... truncated: the file contains the complete input"
     return [
         Listing(toml.rstrip("\n"), "Save this text as response.toml in the folder of the record, if there is one:"),
         Listing("\n".join(results.commands), "Commands that give the same numbers:"),
         Paragraph(f"{SOFTWARE}; SHA-256 of the inputs: {results.fingerprint}.", "Software"),
-        Paragraph(_method(first), "Method"),
+        Paragraph(method_words(first, first.energy.closure), "Method"),
     ]
 
 
-def _method(first: Response) -> str:
-    settings = "; ".join(f"{name.replace('_', ' ')} {value}" for name, value in first.settings.stated.items())
-    return f"engine {first.engine}; {settings}; energy balance error {first.energy.closure:.1e} of the largest energy."
+def method_words(response: ResponseBase, closure: float) -> str:
+    """Return engine and settings of a response, and its energy balance error divided by the largest energy."""
+    settings = "; ".join(f"{name.replace('_', ' ')} {value}" for name, value in response.settings.stated.items())
+    return f"engine {response.engine}; {settings}; energy balance error {closure:.1e} of the largest energy."
 
 
 def _coefficients(answer: ImpactAnswer, foot: Foot) -> ReportTable:
@@ -196,10 +210,11 @@ def _outcomes(responses: Mapping[str, Response], friction: float) -> ReportTable
     return answer_table("Outcome", rows, (), note, marks=marks)
 
 
-def _impacts(label: str, response: Response) -> ReportTable:
-    shown = response.impacts[:_MOST_IMPACTS]
+def impact_table(label: str, impacts: np.ndarray) -> ReportTable:
+    """Return the first impacts of a response with a restitution."""
+    shown = impacts[:_MOST_IMPACTS]
     rows = AnswerRows({"number": [*range(1, shown.size + 1)], **AnswerRows.of(shown).columns})
-    left = response.impacts.size - shown.size
+    left = impacts.size - shown.size
     note = f"{left} more impacts, decreasing; the table of impacts contains all." if left > 0 else ""
     return answer_table(f"Impacts with {restitution_words(label)}", rows, (), note, display=Display(own=CLOSELY))
 
@@ -217,17 +232,21 @@ def _outcome(label: str, response: Response) -> dict[str, Any]:
     }
 
 
-def response_content(response: Response, *, name: str, date: str, friction: float = DEFAULT_FRICTION) -> Content:
-    """Return the report of a response: body, energy loss at an impact, ground motion, response and pictures."""
+def inputs_of(response: Any, body: Body) -> tuple[ImpactAnswer, Motion | None, dict[str, Measure]]:
+    """Return the impact of a body, and the scaled motion of its response with the intensity measures."""
     if response.outcome is Outcome.FAILED:
         raise InvalidValueError("the response has no result to report: {reason}", reason=response.summary)
+    impact = ImpactAnswer.of(body, None, foot="both", gravity=response.settings.gravity, identities=False)
+    motion, scale = response.motion, response.scale
+    if motion is not None and scale != 1.0:
+        motion = motion.scaled(scale)
+    return impact, motion, {} if motion is None or scale == 0.0 else measures_of(motion, fine_samples(motion))
+
+
+def response_content(response: Response, *, name: str, date: str, friction: float = DEFAULT_FRICTION) -> Content:
+    """Return the report of a response: body, energy loss at an impact, ground motion, response and pictures."""
     friction = friction if isinstance(friction, Assumed) else checks.positive("friction", friction)
-    gravity = response.settings.gravity
-    impact = ImpactAnswer.of(response.body, None, foot="both", gravity=gravity, identities=False)
-    motion = (
-        response.motion if response.motion is None or response.scale == 1.0 else response.motion.scaled(response.scale)
-    )
-    measures = {} if motion is None or response.scale == 0.0 else measures_of(motion, fine_samples(motion))
+    impact, motion, measures = inputs_of(response, response.body)
     responses = {response.parameters.label: response}
     document = response_document(ResponseReport(impact, motion, measures, responses, {}, friction, name, date))
     pictures: dict[str, Callable[[], Any]] = {

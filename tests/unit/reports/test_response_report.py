@@ -52,6 +52,43 @@ def test_report_of_free_rocking(tmp_path):
     assert html.count("<figure>") == 3
 
 
+WALL = rk.Restrained(
+    rk.Block(width=1.0, height=5.0, mass=2000.0, centre=(0.35, 2.0), moment_of_inertia=3000.0),
+    [
+        rk.Tendon(x=0.5, stiffness=2e5, prestress=6e3, name="cable", rupture_elongation=0.05),
+        rk.Fuse(x=0.1, length=0.5, stiffness=2e6, yield_force=2e3, hardening=0.02, name="fuse <1>"),
+    ],
+)
+
+
+def test_report_of_a_body_with_restraints(tmp_path):
+    """The report states the damage, force laws, forces and uplift accelerations of an asymmetric body."""
+    pytest.importorskip("jinja2")
+    pytest.importorskip("typst")
+    response = rk.simulate(WALL, PULSE, "housner")
+    assert response.report(tmp_path / "wall.pdf", name="Wall").read_bytes().startswith(b"%PDF")
+    html = response.report(tmp_path / "wall.html", name="Wall", date="").read_text(encoding="utf-8")
+    rows = dict(zip(*map(response.restraints.columns.get, ("restraint", "largest_force")), strict=True))
+    right, left = 9.80665 * 0.65 / 2.0, 9.80665 * 0.35 / 2.0  # the moment of the prestress about a foot adds to these
+    for words in (
+        "Yielded:", "fuse &lt;1&gt;", "stiffness 2000000, yield_force 2000", f"{rows['cable']:.4g}",
+        "yields in tension",
+        f"{right + 6e3 * 0.5 / (2000 * 2.0):.4g} m/s2 about the right foot",
+        f"{left + 6e3 * 0.5 / (2000 * 2.0):.4g} m/s2 about the left foot",
+    ):  # fmt: skip
+        assert words in html
+    assert html.count("<figure>") == 5
+    assert "Broken:" not in html
+    assert "Broken:</strong> cable" in (
+        rk.simulate(WALL, PULSE, "housner", scale=1.4).report(tmp_path / "b.html").read_text(encoding="utf-8")
+    )
+
+
+def test_report_of_a_response_with_friction_is_refused(tmp_path):
+    with pytest.raises(RockingError, match="RestrainedResponse"):
+        ASKED["contact"]().report(tmp_path / "x.pdf")
+
+
 @pytest.mark.parametrize("way", ["plot", "animate", "report"])
 @pytest.mark.parametrize("name", ["x.txt", "x"])
 def test_other_endings_are_refused(way, name, tmp_path):
