@@ -15,6 +15,7 @@ from .bodies import Restrained as Restrained
 from .bodies import Section as Section
 from .bodies import Solid as Solid
 from .bodies import Spring as Spring
+from .bodies import Stack as Stack
 from .bodies import Tendon as Tendon
 from .bodies import ViscousDamper as ViscousDamper
 from .bodies.formats import read_body as read_body

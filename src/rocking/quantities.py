@@ -210,6 +210,23 @@ _RESTRAINTS = (
     Quantity("balancing_acceleration", "m/s2", "ground acceleration in equilibrium with the rotation"),
     Quantity("restoring_moment", "N m", "moment of gravity and restraints about the foot, against the rotation"),
 )
+_STACK = (
+    Quantity("joint", "1", "number of the joint below a body; 1 is the joint on the ground"),
+    Quantity("joint_state", "", "monolithic, rocking, sliding, rocking and sliding, or overturned", label="state"),
+    Quantity("joint_event", "", "opens, impact, closes, or turning point (peak)", label="event"),
+    Quantity("corners_before", "", "corners in contact before the event, lowest joint first", label="before"),
+    Quantity("corners_after", "", "corners in contact after the event, lowest joint first", label="after"),
+    Quantity("joint_height", "m", "height of the joint above the ground", label="height"),
+    Quantity("joint_width", "m", "distance of the corners of the joint", label="width"),
+    Quantity("opening", "rad", "rotation of the upper body of a joint relative to the lower body"),
+    Quantity("peak_opening", "rad", "largest opening of the joint"),
+    Quantity("residual_opening", "rad", "opening of the joint at the end of the response"),
+    Quantity("joint_displacement", "m", "displacement of the upper body along the joint"),
+    Quantity("peak_joint_displacement", "m", "largest displacement along the joint", label="peak displacement"),
+    Quantity(
+        "residual_joint_displacement", "m", "displacement along the joint at the end", label="residual displacement"
+    ),
+)
 _SAMPLES = (
     Quantity("time", "s", "time", digits=".6f"),
     Quantity("rotation", "rad", "rotation theta, positive clockwise"),
@@ -682,6 +699,7 @@ QUANTITIES: dict[str, Quantity] = {
         *_HISTORY_IN_SPACE,
         *_HISTORY_ON_THE_HULL,
         *_RESTRAINTS,
+        *_STACK,
         *_SAMPLES,
         *_LONG_RUN,
         *_IMPACTS_AND_INTERVALS,
@@ -707,7 +725,7 @@ _PARTS = """
     crossings curves decides definition designs died directions doubts edges ends envelope errata event evidence
     examples facets file file_unit files finding findings first_corner folder forced from hazard headline
     hierarchy identities ignored im im_description inputs intensity interfaces intervals inventory is_complete islands
-    judged_by
+    joint_events joints judged_by
     label laboratories language last_state league left_out_groups level likelihood likelihood_scale lowest
     lowest_uplift mean messages method methods mirrored model_error models motion motions_apart new not_assessed
     not_objects not_read not_sampled note notes objects one_by_one other_models outcome_pairs outside

@@ -16,3 +16,5 @@ from .restraints import ViscousDamper as ViscousDamper
 from .section import Section as Section
 from .solid import Part as Part
 from .solid import Solid as Solid
+from .stack import Joint as Joint
+from .stack import Stack as Stack

@@ -26,6 +26,10 @@ from .rolling.response import SpatialResponse as SpatialResponse
 from .rolling.settings import SpaceBatchSettings as SpaceBatchSettings
 from .rolling.settings import SpaceSettings as SpaceSettings
 from .settings import Settings as Settings
+from .stack.impacts import StackImpact as StackImpact
+from .stack.impacts import stack_impact as stack_impact
+from .stack.response import StackResponse as StackResponse
+from .stack.settings import StackSettings as StackSettings
 
 Outcome = rocking.outcome.Outcome
 Status = rocking.outcome.Status

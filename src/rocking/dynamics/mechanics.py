@@ -15,10 +15,11 @@ from rocking.dynamics.plane_frictional.mechanics import PlaneContact
 from rocking.dynamics.restrained.mechanics import RestrainedRocking
 from rocking.dynamics.rolling.mechanics import SpaceRocking
 from rocking.dynamics.settings import Settings
+from rocking.dynamics.stack.mechanics import StackRocking
 from rocking.restitution.headline import label_of
 
 MECHANICS: tuple[Mechanics, ...] = (
-    RestrainedRocking(), PlaneRocking(), PlaneContact(), SpaceRocking(), HullRocking()
+    RestrainedRocking(), StackRocking(), PlaneRocking(), PlaneContact(), SpaceRocking(), HullRocking()
 )  # fmt: skip
 
 

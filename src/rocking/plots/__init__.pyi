@@ -41,6 +41,7 @@ from .solid import equilibria_picture as equilibria_picture
 from .solid import slices_picture as slices_picture
 from .solid import solid_picture as solid_picture
 from .spatial import spatial_picture as spatial_picture
+from .stack import stack_picture as stack_picture
 from .style import journal_style as journal_style
 from .style import new_figure as new_figure
 from .style import write as write

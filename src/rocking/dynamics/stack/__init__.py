@@ -1,0 +1,1 @@
+"""Plane bodies on each other, with joints that open."""
