@@ -1,5 +1,6 @@
 """Plane bodies on each other: drums of a column, a showcase on a pedestal, courses of a wall."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -92,7 +93,7 @@ class Stack:
     """
 
     bodies: tuple[Body, ...]
-    friction: tuple[float, ...] | None
+    friction: tuple[float, ...]  # infinite for joints that do not slide
     restitution: tuple[float, ...]
     offsets: tuple[float, ...]
 
@@ -107,9 +108,8 @@ class Stack:
         for body in listed:
             checks.of_kind("bodies", body, Body, "a Block, Section or MassPoints")
         count = checks.whole("number of bodies", len(listed), 1, MOST_BODIES)
-        coefficients = None if friction is None else _per_joint("friction", friction, count, 1e6)
         object.__setattr__(self, "bodies", listed)
-        object.__setattr__(self, "friction", coefficients)
+        object.__setattr__(self, "friction", _per_joint("friction", friction, count, 1e6))
         object.__setattr__(self, "restitution", _per_joint("restitution", restitution, count, 1.0, open_high=True))
         object.__setattr__(self, "offsets", _offsets(offsets, count - 1))
         self._check_support()
@@ -234,7 +234,7 @@ class Stack:
             "joints": [
                 {
                     "joint": index + 1, "joint_height": joint.height, "joint_width": joint.width,
-                    "friction": None if self.friction is None else self.friction[index],
+                    "friction": self.friction[index] if self.friction[index] < math.inf else None,
                     "normal_restitution": self.restitution[index],
                     "uplift_acceleration": min(
                         self.side_above(index, foot, gravity).uplift_acceleration for foot in conventions.FEET
@@ -268,7 +268,9 @@ def top_edge(body: Body) -> tuple[float, float]:
 
 
 def _per_joint(name: str, values: Any, count: int, high: float, **options: Any) -> tuple[float, ...]:
-    """Return one coefficient per joint."""
+    """Return one coefficient per joint; infinite without values."""
+    if values is None:
+        return (math.inf,) * count
     listed = [values] * count if np.ndim(values) == 0 else list(values)
     if len(listed) != count:
         raise InvalidValueError(

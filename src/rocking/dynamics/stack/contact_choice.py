@@ -22,7 +22,7 @@ class CornerRow:
 
 
 @dataclass
-class Solution:
+class CornerSolution:
     """Solution of the problem: change of velocity or acceleration, and contacts."""
 
     rows: list[CornerRow]
@@ -65,7 +65,7 @@ def after_impact(
     rates: Sequence[float],
     flat: set[int],
     restitution: Sequence[float],
-) -> Solution:
+) -> CornerSolution:
     """Return the velocities after an impact of the joints in `flat` that are open; the other flat joints are closed."""
     rows = corner_rows(chain, sides, rotation, flat)
     velocities = chain.velocities(sides, rotation, rates)
@@ -81,7 +81,7 @@ def after_impact(
 
 def under_forces(
     chain: Chain, sides: Sides, rotation: Sequence[float], rates: Sequence[float], ground: Vector
-) -> Solution:
+) -> CornerSolution:
     """Return the accelerations of all corners in contact. Pivots of open joints keep their contact."""
     closed = {joint for joint, side in enumerate(sides) if side == 0}
     rows = corner_rows(chain, sides, rotation, closed)
@@ -114,7 +114,7 @@ def _jacobian(chain: Chain, sides: Sides, rotation: Sequence[float], rows: list[
 
 def _solved_problem(
     chain: Chain, rows: list[CornerRow], jacobian: list[list[float]], free: list[float], offsets: list[float]
-) -> Solution:
+) -> CornerSolution:
     """Return the projection of the free motion. The symmetric positive definite problem has one solution."""
     inverse = [value for m, i in zip(chain.mass, chain.inertia, strict=True) for value in (1 / m, 1 / m, 1 / i)]
     weighted = [[value * w for value, w in zip(row, inverse, strict=True)] for row in jacobian]
@@ -135,7 +135,7 @@ def _solved_problem(
     motion = list(free)
     for row, multiplier in zip(weighted, multipliers, strict=True):
         motion = [value + change * multiplier for value, change in zip(motion, row, strict=True)]
-    return Solution(rows, motion, multipliers, gaps, active)
+    return CornerSolution(rows, motion, multipliers, gaps, active)
 
 
 def _equalities(matrix: list[list[float]], right: list[float], active: list[bool]) -> list[float]:

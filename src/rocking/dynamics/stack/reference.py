@@ -16,7 +16,7 @@ from scipy.optimize import brentq
 from rocking.bodies.stack import Stack
 from rocking.conventions import FEET
 from rocking.dynamics.stack.chain import Chain, JointForce, Sides, Vector
-from rocking.dynamics.stack.contact_choice import Solution, after_impact, under_forces
+from rocking.dynamics.stack.contact_choice import CornerSolution, after_impact, under_forces
 from rocking.dynamics.stack.settings import StackSettings
 from rocking.dynamics.stack.trajectory import CLOSES, IMPACT, OPENS, PEAK, StackEvent, StackTrajectory
 from rocking.motions.segments import Segments
@@ -201,7 +201,9 @@ class StackReference:
             elif side:
                 self._open(joint, side)
 
-    def _change(self, joint: int, kind: str, sides: Sides, rates: Sequence[float], solution: Solution | None) -> None:
+    def _change(
+        self, joint: int, kind: str, sides: Sides, rates: Sequence[float], solution: CornerSolution | None
+    ) -> None:
         before, rotation, old = self._rates, self._rotation, self.sides
         rates = list(rates)
         for k, side in enumerate(sides):
@@ -283,7 +285,7 @@ class StackReference:
             extremes.normal[k] = min(extremes.normal[k], force.normal / self.weight[k])
             ratio = abs(force.tangential) / force.normal if force.normal > 0.0 else math.inf
             extremes.ratio[k] = max(extremes.ratio[k], ratio)
-            if friction is not None and ratio > friction[k] and math.isnan(extremes.slip_time[k]):
+            if ratio > friction[k] and math.isnan(extremes.slip_time[k]):
                 extremes.slip_time[k] = self.time
 
     def _sample(self) -> list[float]:

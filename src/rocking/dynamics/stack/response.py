@@ -158,7 +158,7 @@ class StackResponse(ResponseBase):
         if not run.assumes_sticking:
             return []
         for index, time in enumerate(run.slip_time.tolist()):
-            if self.body.friction is not None and math.isfinite(time):
+            if math.isfinite(time):
                 facts = {
                     "joint": index + 1, "time": time, "ratio": float(run.largest_ratio[index]),
                     "friction": self.body.friction[index],
@@ -254,10 +254,9 @@ class StackResponse(ResponseBase):
 
     @property
     def _facts(self) -> dict[str, Any]:
-        friction = self.body.friction
         return {
             "body": "Stack", "mass": self.body.mass, "bodies": len(self.body.bodies),
-            "friction": "joints stick" if friction is None else ", ".join(f"{value:g}" for value in friction),
+            "friction": ", ".join(f"{value:g}" for value in self.body.friction),
             "motion": "none: free rocking" if self.motion is None else self.motion.name,
             "motion_provenance": motion_provenance(self.motion), "scale": self.scale,
         }  # fmt: skip

@@ -52,6 +52,10 @@ class StackTrajectory:
     assumes_sticking: bool = True  # True if the engine has no sliding
     engine: str = "reference (Dormand-Prince, order 8)"
 
+    unsolved_steps: int = 0  # steps whose complementarity conditions exceed the tolerance
+    interpenetration: float = 0.0  # largest, over the semi-diagonal of the smallest body [-]
+    energy_created: float = 0.0  # sum of positive works of contact impulses [J]
+
     @property
     def impacts(self) -> int:
         """Number of impacts."""
