@@ -75,7 +75,7 @@ class Library {
         for (std::thread& worker : crew) worker.join();
     }
 
-    // One history with its samples; returns counts, results, events of body and restraints, peaks, states of restraints.
+    // One history with its samples; returns counts, results, events of body and restraints, peaks, states of restraints, contacts with walls.
     nb::tuple trace(Line<const double> numbers, Table<const double> restraints, Line<const std::int64_t> choices, Table<double> samples, Table<double> elongation,
                     Table<double> force, Table<double> restraint_work, double gravity, double rest_speed, double tolerance, std::int64_t most_events, bool linear) const {
         expect(numbers.size() == kNumbers && choices.size() == kChoices && restraints.shape(1) == kRestraint, "one history expected");
@@ -87,7 +87,7 @@ class Library {
         const Settings set{gravity, rest_speed, tolerance, most_events, linear};
         std::vector<Device> devices = devices_of(restraints.data(), c, set);
         double* s = samples.data();
-        Trace out{s, s + count, s + 2 * count, elongation.data(), force.data(), restraint_work.data(), {}, {}, {}};
+        Trace out{s, s + count, s + 2 * count, elongation.data(), force.data(), restraint_work.data(), {}, {}, {}, {}};
         std::int64_t written = 0;
         const Result r = followed(numbers.data(), c, set, devices, &out, &written);
         double values[kResults];
@@ -99,7 +99,7 @@ class Library {
                                          d.smallest_force, d.largest_elongation, d.smallest_elongation, d.start_energy));
         for (std::int64_t k : counts) integers.append(k);
         for (double k : values) floats.append(k);
-        return nb::make_tuple(integers, floats, written, listed(out.body), listed(out.restraints), listed(out.peaks), states);
+        return nb::make_tuple(integers, floats, written, listed(out.body), listed(out.restraints), listed(out.peaks), states, listed(out.contacts));
     }
 
   private:
@@ -149,7 +149,7 @@ class Library {
 
 NB_MODULE(_restrained, m) {
     using namespace rocking::restrained;
-    m.doc() = "Histories of plane bodies with tendons, dampers, fuses and springs.";
+    m.doc() = "Histories of plane bodies with tendons, dampers, fuses, springs and walls.";
     nb::class_<Library>(m, "Library")
         .def(nb::init<Line<const double>, Table<const std::int64_t>, Line<const double>>(), "data"_a, "places"_a, "steps"_a)
         .def("run", &Library::run, "numbers"_a, "restraints"_a, "choices"_a, "results"_a, "counts"_a, "of_restraints"_a, "gravity"_a, "rest_speed"_a,

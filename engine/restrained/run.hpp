@@ -11,7 +11,8 @@ namespace rocking::restrained {
 enum Outcome : std::int64_t { kNoUplift = 0, kRocked = 1, kOverturned = 2, kFailed = 3, kHeld = 7 };
 enum Status : std::int64_t { kGood = 0, kInvalid = 1, kNotFinite = 2, kTooManyEvents = 3, kLostContact = 5, kStuck = 6 };
 enum BodyEvent : int { kUplift = 0, kImpact = 1, kRest = 2 };
-constexpr double kEnd = 1.0 - 1e-13, kHalfPi = 1.5707963267948966, kSingular = 1e-14, kTie = 1e-11, kAfter = 30.0;
+constexpr double kEnd = 1.0 - 1e-13, kHalfPi = 1.5707963267948966, kSingular = 1e-14, kTie = 1e-11, kAfter = 30.0, kBlocked = 1e9;
+constexpr int kInstants = 32;  // instants per step at which the contact with a wall is recorded
 
 struct Settings {
     double gravity, rest_speed, tolerance;
@@ -27,7 +28,7 @@ struct Result {
 // Output of a single history: samples, and events as rows (kind, time, side or restraint, 4 numbers).
 struct Trace {
     double *rotation, *velocity, *work, *elongation, *force, *restraint_work;  // one row per sample
-    std::vector<double> body, restraints, peaks;
+    std::vector<double> body, restraints, peaks, contacts;  // contacts: time, theta, theta', forces in contact with walls
 };
 
 class Run {
@@ -39,6 +40,9 @@ class Run {
             const double top = (k ? -1.0 : 1.0) * s.alpha;
             q_[k] = {k ? -1.0 : 1.0, s.alpha, s.p, s.inertia, std::sin(top), std::cos(top), set.linear};
         }
+        for (const Device& d : d_)
+            for (int k = 0; k < 2; ++k)
+                if (!std::isnan(d.law.rebound) && (k ? -1.0 : 1.0) * d.levers[k].at_rest < 0.0) rebound_[k] = d.law.rebound;
         for (const Device& d : d_) powers_ |= d.law.is_power(), friction_ |= d.law.slip_force != 0.0;
     }
 
@@ -88,7 +92,7 @@ class Run {
 
     void step(double width) {
         width = std::min(width, longest() - tau_);
-        const double h = width * m_.step;
+        const double h = h_ = width * m_.step;
         const bool singular = powers_ && std::fabs(rate_) < slow();
         double push[kGround], weight[kGround];
         const int terms = ground(width, push, weight), count = static_cast<int>(d_.size());
@@ -105,6 +109,7 @@ class Run {
         at_once_ = x > 0.0 ? 0 : at_once_ + 1;
         if (at_once_ > 1000) return end(kFailed, kStuck);
         add_work(x, push, weight, terms);
+        if (std::any_of(d_.begin(), d_.end(), [](const Device& d) { return d.law.touches(); })) note_contact(x, width);
         theta_ = value(s_.theta, s_.n, x), rate_ = slope(s_.theta, s_.n, x) / h;
         r_.peak_velocity = std::max(r_.peak_velocity, std::fabs(rate_));
         carry(x, h);
@@ -161,12 +166,41 @@ class Run {
             const Phase& p = d_[i].law.phase;
             if (p.high < kInf) offer(s_.items[i].elongation, n - 2, fraction, -1.0, p.high - d_[i].elongation, kLimit, i, true);
             if (p.low > -kInf) offer(s_.items[i].elongation, n - 2, fraction, 1.0, d_[i].elongation - p.low, kLimit, i, false);
+            if (d_[i].law.touches() || p.name == kReleased) offer_margin(i, fraction);
             const double arm = s_.items[i].slope[0];
             if (p.direction && arm != 0.0) offer(s_.items[i].slope, n - 2, fraction, std::copysign(1.0, arm), std::fabs(arm), kArm, i);
         }
         double rate[kMost + 1];
         for (int k = 1; k < n; ++k) rate[k - 1] = k * s_.theta[k];
         offer(rate, n - 1, fraction, direction_, direction_ * rate[0], kTurn);
+    }
+
+    // The force k d + c d' of a wall ends its contact at 0, and begins the contact if the point is inside the wall.
+    void offer_margin(int i, double fraction) {
+        const Law& law = d_[i].law;
+        const double sign = law.touches() ? -1.0 : 1.0, damping = law.damping / h_;
+        double force[kMost + 1];
+        const int n = s_.n - 2;
+        for (int k = 0; k < n; ++k) force[k] = law.stiffness * s_.items[i].elongation[k] + damping * s_.items[i].rate[k];
+        force[0] += law.stiffness * law.gap;
+        offer(force, n, fraction, sign, sign * force[0], kLimit, i, law.touches());
+    }
+
+    // Records extremes of forces, and for a trace time, state and forces, at instants of a step in contact with a wall.
+    void note_contact(double x, double width) {
+        const int n = s_.n - 2;
+        for (int k = rate_ == 0.0; k <= kInstants; ++k) {
+            const double y = x * k / kInstants;
+            if (trace_) trace_->contacts.insert(trace_->contacts.end(), {now() + y * width * m_.step, value(s_.theta, s_.n, y), slope(s_.theta, s_.n, y) / h_});
+            for (std::size_t i = 0; i < d_.size(); ++i) {
+                const Terms& t = s_.items[i];
+                const bool viscous = d_[i].law.coefficient != 0.0 && t.is_viscous;
+                const double e = lever(d_[i]).linear ? lever(d_[i]).at_rest * value(s_.theta, s_.n, y) : value(t.elongation, n, y);
+                const double f = d_[i].law.phase.force(e) + (viscous ? value(t.viscous, n, y) : 0.0);
+                d_[i].note_force(f);
+                if (trace_) trace_->contacts.push_back(f);
+            }
+        }
     }
 
     // Adds the work of viscous forces, and for a trace the work of the ground.
@@ -232,16 +266,18 @@ class Run {
         r_.overturning_time = kNan;
         theta_ = 0.0;
         const double before = rate_, speed = std::fabs(rate_);
-        side_ = -side_;
-        const double r = b_.sides[at()].coefficient;
-        rate_ = r * before;  // Eq. 28
+        const double at_wall = rebound_[1 - at()];
+        if (std::isnan(at_wall)) side_ = -side_;
+        const double r = std::isnan(at_wall) ? b_.sides[at()].coefficient : at_wall;
+        rate_ = r * before + 0.0;  // Eq. 28; not -0 after a stop
         ++r_.impacts;
         note(kImpact, before, rate_, r);
         if (r_.impacts >= set_.most_events) return end(kFailed, kTooManyEvents);
         if (stretch_ >= count_) return end(kRocked, kGood);
         for (Device& d : d_) d.elongation = 0.0;
         const Holding held = holding();
-        if (comes_to_rest(b_, held, m_, stretch_ < m_.count ? stretch_ : m_.count, tau_, count_, scale_, side_, r * speed, friction_ ? 0.0 : set_.rest_speed)) {
+        const bool exact = friction_ || !std::isnan(rebound_[0]) || !std::isnan(rebound_[1]);
+        if (comes_to_rest(b_, held, m_, stretch_ < m_.count ? stretch_ : m_.count, tau_, count_, scale_, side_, std::fabs(r) * speed, exact ? 0.0 : set_.rest_speed)) {
             note(kRest, 0.0, 0.0, 0.0);
             rate_ = 0.0;
             for (Device& d : d_) d.rate = 0.0;
@@ -259,6 +295,7 @@ class Run {
             const int phase = d.law.phase.name;
             d.law.settle(d.elongation, arm * direction > 0.0 ? 1 : arm * direction < 0.0 ? -1 : 0);
             d.rate = arm * rate_;
+            if (d.law.touches() && d.force() > 0.0) d.law.cross(d.elongation, true);
             if (d.law.phase.name != phase) note_phase(static_cast<int>(i), before);
         }
     }
@@ -343,7 +380,7 @@ class Run {
                 const double arm = d.levers[k].at_rest;
                 moment += d.law.slip_force != 0.0 ? d.law.slip_force * std::fabs(arm) : (k ? -1.0 : 1.0) * arm * d.law.phase.force(0.0);
             }
-            held.more[k] = moment / b_.sides[k].unit;  // Eq. 353
+            held.more[k] = moment / b_.sides[k].unit + (std::isnan(rebound_[k]) ? 0.0 : kBlocked);  // Eq. 353
             held.sine[k] = set_.linear ? b_.sides[k].alpha : std::sin(b_.sides[k].alpha);
             held.cosine[k] = set_.linear ? 1.0 : std::cos(b_.sides[k].alpha);
         }
@@ -445,7 +482,8 @@ class Run {
     bool powers_ = false, friction_ = false, done_ = false;
     int side_ = 0, direction_ = 0, at_once_ = 0;
     std::int64_t stretch_ = 0, acts_ = 0;
-    double theta_ = 0.0, rate_ = 0.0, tau_ = 0.0, work_ = 0.0, last_theta_ = 0.0, last_rate_ = 0.0;
+    double theta_ = 0.0, rate_ = 0.0, tau_ = 0.0, work_ = 0.0, last_theta_ = 0.0, last_rate_ = 0.0, h_ = 0.0;
+    double rebound_[2] = {kNan, kNan};  // coefficient of restitution at a rigid wall that blocks the right, the left side
 
   public:
     std::int64_t written = 0;  // number of samples

@@ -96,14 +96,17 @@ class Series {
         } else {
             const double along = lever.along * sines_[k] - lever.across * cosines_[k];
             t.elongation[k] = k ? t.rate[k - 1] / k : lever.elongation(half_sines_[0], half_[0]);
-            if (lever.length != 0.0) {
+            if (lever.parallel) {
+                t.slope[k] = along;
+            } else if (lever.length != 0.0) {
                 double past = 0.0;
                 for (int j = 1; j <= k; ++j) past += t.elongation[j] * t.slope[k - j];
                 t.slope[k] = (along - past) / (lever.length + t.elongation[0]);  // Eq. 345
             } else {
                 t.slope[k] = lever.radius * half_[k];
             }
-            moment = (phase.constant - phase.stiffness * lever.length) * t.slope[k] + phase.stiffness * along;  // Eq. 347
+            if (lever.parallel) moment = phase.constant * along + (phase.stiffness != 0.0 ? phase.stiffness * product(t.elongation, t.slope, k) : 0.0);
+            else moment = (phase.constant - phase.stiffness * lever.length) * t.slope[k] + phase.stiffness * along;  // Eq. 347
         }
         t.rate[k] = product(steps, t.slope, k);
         if (law.coefficient == 0.0 || !t.is_viscous) return moment;

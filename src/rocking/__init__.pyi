@@ -18,6 +18,7 @@ from .bodies import Spring as Spring
 from .bodies import Stack as Stack
 from .bodies import Tendon as Tendon
 from .bodies import ViscousDamper as ViscousDamper
+from .bodies import Wall as Wall
 from .bodies.formats import read_body as read_body
 from .decision.assessment import assess as assess
 from .decision.inventory import inventory as inventory

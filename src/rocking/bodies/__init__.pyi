@@ -13,6 +13,7 @@ from .restraints import Restraint as Restraint
 from .restraints import Spring as Spring
 from .restraints import Tendon as Tendon
 from .restraints import ViscousDamper as ViscousDamper
+from .restraints import Wall as Wall
 from .section import Section as Section
 from .solid import Part as Part
 from .solid import Solid as Solid

@@ -1,6 +1,5 @@
 """A plane body with restraints."""
 
-import copy
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -8,7 +7,7 @@ from typing import Any
 from rocking import checks, conventions
 from rocking.answers import Answer
 from rocking.bodies.body import Body, Side, assumed_density
-from rocking.bodies.restraints import Restraint
+from rocking.bodies.restraints import Restraint, Wall
 from rocking.conventions import Foot
 from rocking.errors import InvalidValueError
 from rocking.messages import Message
@@ -16,19 +15,20 @@ from rocking.messages import Message
 
 @dataclass(frozen=True)
 class Restrained:
-    """A plane body with tendons, dampers, fuses and springs.
+    """A plane body with tendons, dampers, fuses, springs and walls.
 
     Parameters
     ----------
     body : Body
         The body: Block, Section or MassPoints.
     restraints : sequence of Restraint
-        Tendon, ViscousDamper, FrictionDamper, Fuse and Spring, in any number. Restraints without a name receive a name.
+        Tendon, ViscousDamper, FrictionDamper, Fuse, Spring and Wall, in any number. Restraints without a name receive a
+        name.
 
     Raises
     ------
     InvalidValueError
-        If the body is not a plane body, or two restraints have the same name.
+        If the body is not a plane body, two restraints have the same name, or the law of a wall is not for this body.
 
     Notes
     -----
@@ -52,9 +52,10 @@ class Restrained:
         checks.of_kind("body", body, Body, "a Block, Section or MassPoints")
         listed = [restraints] if isinstance(restraints, Restraint) else list(restraints)
         for restraint in listed:
-            checks.of_kind("restraints", restraint, Restraint, "Tendon, ViscousDamper, FrictionDamper, Fuse or Spring")
+            allowed = "Tendon, ViscousDamper, FrictionDamper, Fuse, Spring or Wall"
+            checks.of_kind("restraints", restraint, Restraint, allowed)
         object.__setattr__(self, "body", body)
-        object.__setattr__(self, "restraints", tuple(_named(listed)))
+        object.__setattr__(self, "restraints", tuple(_named([restraint.placed_on(body) for restraint in listed])))
 
     @property
     def mass(self) -> float:
@@ -119,6 +120,16 @@ class Restrained:
         }
 
 
+def without_walls(body: Any) -> None:
+    """Raise an error for a body at a wall, in computations that do not check the contact force of the floor."""
+    if any(isinstance(restraint, Wall) for restraint in getattr(body, "restraints", ())):
+        raise InvalidValueError(
+            "Many histories do not support walls, because they do not check the contact force of the floor. Use "
+            "simulate.",
+            parameter="restraints",
+        )  # fmt: skip
+
+
 PLANE_BODIES = (Body, Restrained)
 """Classes of plane bodies, without and with restraints."""
 
@@ -126,7 +137,7 @@ PLANE_BODIES = (Body, Restrained)
 def facts_of(restraint: Restraint) -> dict[str, Any]:
     """Return name, law, source, domain and constants of a restraint."""
     return {
-        "restraint": restraint.name, "force_law": restraint.law, "law_source": restraint.source,
+        "restraint": restraint.name, "force_law": restraint.force_law, "law_source": restraint.source,
         "law_domain": restraint.domain, "ground_point": restraint.ends[0], "body_point": restraint.ends[1],
         "law_constants": ", ".join(f"{name} {_short(value)}" for name, value in restraint.constants.items()),
     }  # fmt: skip
@@ -139,13 +150,12 @@ def _short(value: Any) -> str:
 def _named(restraints: list[Restraint]) -> list[Restraint]:
     """Return the restraints with names. The default name is the kind and a number."""
     kinds = [restraint.kind for restraint in restraints]
-    named = [copy.copy(restraint) for restraint in restraints]
-    for k, restraint in enumerate(named):
+    for k, restraint in enumerate(restraints):
         if not restraint.name:
             number = kinds[: k + 1].count(restraint.kind)
             object.__setattr__(restraint, "name", f"{restraint.kind.replace('_', ' ')} {number}")
-    names = [restraint.name for restraint in named]
+    names = [restraint.name for restraint in restraints]
     for name in names:
         if names.count(name) > 1:
             raise InvalidValueError("two restraints have the name {value}", parameter="restraints", value=name)
-    return named
+    return restraints

@@ -1,10 +1,13 @@
-"""Restraints of plane bodies: tendons, dampers, fuses and springs between the ground and a point of the body."""
+"""Restraints of plane bodies: tendons, dampers, fuses, springs and walls, which act on a point of the body."""
 
+import copy
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any, ClassVar
 
 from rocking import checks
+from rocking.bodies.body import Body
+from rocking.conventions import FEET
 from rocking.errors import InvalidValueError
 
 Point = tuple[float, float]
@@ -43,7 +46,7 @@ class Restraint:
     """
 
     kind: ClassVar[str] = ""
-    law: ClassVar[str] = ""  # force law as text
+    force_law: ClassVar[str] = ""  # force law as text
     source: ClassVar[str] = ""
     domain: ClassVar[str] = ""
 
@@ -54,17 +57,20 @@ class Restraint:
     name: str = ""
 
     def __post_init__(self) -> None:
+        self._check_position()
+        checks.of_kind("name", self.name, str, "text")
+        if self.name != self.name.strip() or set(self.name) & set(',"\\\n'):
+            raise InvalidValueError(
+                parameter="name", allowed="text without commas, quotation marks and outer spaces", value=self.name
+            )
+
+    def _check_position(self) -> None:
         ends = (self.ground, self.point)
         if (self.x is None) == (None in ends) or (self.x is not None and ends != (None, None)):
             raise InvalidValueError(
                 "{restraint} needs x, or ground and point", parameter="x", value=self.x,
                 restraint=self.kind.replace("_", " "),
             )  # fmt: skip
-        checks.of_kind("name", self.name, str, "text")
-        if self.name != self.name.strip() or set(self.name) & set(',"\\\n'):
-            raise InvalidValueError(
-                parameter="name", allowed="text without commas, quotation marks and outer spaces", value=self.name
-            )
         self._set("length", checks.within("length", self.length, 0.0, checks.LARGEST, unit="m"))
         if self.x is not None:
             self._set("x", checks.number("x", self.x, "m"))
@@ -92,6 +98,21 @@ class Restraint:
         assert self.ground is not None
         assert self.point is not None
         return self.ground, self.point
+
+    def placed_on(self, body: Body) -> "Restraint":
+        """Return the restraint with the values that depend on the body.
+
+        Parameters
+        ----------
+        body : Body
+            The body.
+
+        Returns
+        -------
+        Restraint
+            A copy.
+        """
+        return copy.copy(self)
 
     @property
     def damages(self) -> tuple[str, ...]:
@@ -153,7 +174,7 @@ class Tendon(Restraint):
     """
 
     kind: ClassVar[str] = "tendon"
-    law: ClassVar[str] = "N = P + k (e - ep), 0 <= N <= Ny + H ep"
+    force_law: ClassVar[str] = "N = P + k (e - ep), 0 <= N <= Ny + H ep"
     source: ClassVar[str] = "Dimitrakopoulos & Giouvanidis (2015); Vassiliou & Makris (2015)"
     domain: ClassVar[str] = "no friction in the duct, no mass, no relaxation during the motion; " + _EXACT
 
@@ -223,7 +244,7 @@ class ViscousDamper(Restraint):
     """
 
     kind: ClassVar[str] = "viscous_damper"
-    law: ClassVar[str] = "F = c |e'|^a sgn e'"
+    force_law: ClassVar[str] = "F = c |e'|^a sgn e'"
     source: ClassVar[str] = "Constantinou & Symans (1993); Dimitrakopoulos & DeJong (2012)"
     domain: ClassVar[str] = "no stiffness of the damper and its supports, no end of the stroke; " + _EXACT
 
@@ -263,7 +284,7 @@ class FrictionDamper(Restraint):
     """
 
     kind: ClassVar[str] = "friction_damper"
-    law: ClassVar[str] = "F = Fs sgn e', |F| <= Fs if e' = 0"
+    force_law: ClassVar[str] = "F = Fs sgn e', |F| <= Fs if e' = 0"
     source: ClassVar[str] = "Coulomb's law; Pall & Marsh (1982)"
     domain: ClassVar[str] = (
         "rigid before slip: a small series stiffness changes the rotation at which it sticks; " + _EXACT
@@ -311,7 +332,7 @@ class Fuse(Restraint):
     """
 
     kind: ClassVar[str] = "fuse"
-    law: ClassVar[str] = "F = k (e - ep), |F - H ep| <= Fy, H = a k / (1 - a)"
+    force_law: ClassVar[str] = "F = k (e - ep), |F - H ep| <= Fy, H = a k / (1 - a)"
     source: ClassVar[str] = "bilinear kinematic hardening (Prager 1956); Marriott, Pampanin & Palermo (2009)"
     domain: ClassVar[str] = "no low-cycle fatigue, no bond slip, no bending of the bar; " + _EXACT
 
@@ -365,7 +386,7 @@ class Spring(Restraint):
     """
 
     kind: ClassVar[str] = "spring"
-    law: ClassVar[str] = "F = k (e - gap) for e > gap, k (e + gap) for e < -gap, otherwise 0"
+    force_law: ClassVar[str] = "F = k (e - gap) for e > gap, k (e + gap) for e < -gap, otherwise 0"
     source: ClassVar[str] = "Hooke's law; ties of facades: Giresini et al. (2018)"
     domain: ClassVar[str] = "elastic, no impact in the gap; " + _EXACT
 
@@ -380,5 +401,174 @@ class Spring(Restraint):
         checks.one_of("action", self.action, ACTIONS)
 
 
-KINDS: dict[str, type[Restraint]] = {kind.kind: kind for kind in (Tendon, ViscousDamper, FrictionDamper, Fuse, Spring)}
+WALL_LAWS = ("compliant", "plastic", "sorrentino")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Wall(Restraint):
+    """A wall next to the body, at a right angle to the floor. The wall is frictionless, and it only pushes.
+
+    A compliant wall has the force F = max(0, k d + c d'), with the displacement d of a point of the body into the wall,
+    parallel to the floor. With damping, the contact ends before the body is upright. The floor must not pull the body:
+    otherwise the response contains the time from which the model does not hold.
+
+    A rigid wall touches the upright body from the floor to the point. The body rocks only away from this wall, and hits
+    floor and wall together. With ``law="plastic"`` the body stops: this is the only solution without rebound and
+    without tensile forces. With
+    ``law="sorrentino"`` the body rebounds about the same foot. This law is empirical: it needs friction between body
+    and wall, and a floor that pulls the body.
+
+    Parameters
+    ----------
+    x : float, optional
+        Position of the point, as for the feet; the default is the end of the body on the side of the wall [m].
+    length, ground, point, name
+        Name, as for `Restraint`. The other parameters do not apply to a wall.
+    side : {"left", "right"}
+        Side of the body on which the wall is.
+    gap : float
+        Distance between the wall and the point of the upright body; 0 for a rigid wall [m].
+    height : float, optional
+        Height z of the point of the body; the default is the top of the body [m].
+    stiffness : float, optional
+        k of a compliant wall [N/m].
+    damping : float
+        c of a compliant wall [N s/m].
+    law : {"compliant", "plastic", "sorrentino"}
+        Compliant wall, stop at a rigid wall, or the coefficient of restitution
+        (1 - 1.5 sin^2 alpha)^2 (1 - 1.5 cos^2 alpha) of Sorrentino et al. (2008) for a homogeneous rectangle.
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is outside its range or does not apply to the law, or the stiffness is missing.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> block = rk.Block(width=0.5, height=2.0, mass=500.0)
+    >>> adjacent = rk.Restrained(block, rk.Wall(side="left", height=1.2, stiffness=4e4, damping=600.0))
+    >>> response = rk.free_rocking(adjacent, rotation=0.1, restitution="housner", duration=1.0)
+    >>> response.restraint_events.columns["restraint_phase"]
+    ['contact', 'released', 'open']
+    """
+
+    kind: ClassVar[str] = "wall"
+    force_law: ClassVar[str] = (
+        "compliant: F = max(0, k d + c d'); plastic: stop at theta = 0; sorrentino: rebound at theta = 0"
+    )
+    source: ClassVar[str] = "Giresini et al. (2018); complementarity of rigid impacts; Sorrentino et al. (2008)"
+    domain: ClassVar[str] = (
+        "the point is fixed to the body; no friction at the wall; the floor must not pull the body; sorrentino: "
+        "empirical, it needs friction at the wall and a floor that pulls"
+    )
+
+    side: str
+    gap: float = 0.0
+    height: float | None = None
+    stiffness: float | None = None
+    damping: float = 0.0
+    law: str = "compliant"
+
+    def _check_position(self) -> None:
+        for name, usual in (("length", 0.0), ("ground", None), ("point", None)):
+            if getattr(self, name) != usual:
+                raise InvalidValueError("{parameter} does not apply to a wall", parameter=name)
+        checks.one_of("side", self.side, FEET)
+        checks.one_of("law", self.law, WALL_LAWS)
+        self._check(0.0, "m", "gap")
+        if self.x is not None:
+            self._set("x", checks.number("x", self.x, "m"))
+        if self.height is not None:
+            self._check(0.0, "m", "height", open_low=True)
+        if self.law == "compliant":
+            if self.stiffness is None:
+                raise InvalidValueError("a compliant wall needs stiffness", parameter="stiffness")
+            self._check(0.0, "N/m", "stiffness", open_low=True)
+            self._check(0.0, "N s/m", "damping")
+        elif self.gap or self.damping or self.stiffness is not None:
+            raise InvalidValueError(
+                "a rigid wall has no gap, stiffness and damping", parameter="law", value=self.law,
+                hint="use a compliant wall for a gap",
+            )  # fmt: skip
+
+    @property
+    def sign(self) -> int:
+        """Direction parallel to the floor away from the wall: 1 for a wall on the left, -1 for a wall on the right."""
+        return 1 if self.side == "left" else -1
+
+    @property
+    def ends(self) -> tuple[Point, Point]:
+        """Points of the wall and of the upright body [m]."""
+        assert self.x is not None
+        assert self.height is not None
+        return (self.x - self.sign * self.gap, self.height), (self.x, self.height)
+
+    def placed_on(self, body: Body) -> "Wall":
+        """Return the wall with the position of its point on the body.
+
+        Parameters
+        ----------
+        body : Body
+            The body next to the wall.
+
+        Returns
+        -------
+        Wall
+            A copy with `x` and `height`.
+
+        Raises
+        ------
+        InvalidValueError
+            If the law is not for this body, as in `rebound`.
+        """
+        x_left, _, x_right, top = body.local_box
+        x = body.origin_x + (x_left if self.side == "left" else x_right)
+        height = top if self.height is None else self.height
+        self.rebound(body)
+        return replace(self, x=x if self.x is None else self.x, height=height)
+
+    def rebound(self, body: Body) -> float | None:
+        """Return the ratio of the angular velocities after and before an impact at a rigid wall [-].
+
+        Parameters
+        ----------
+        body : Body
+            The body next to the wall.
+
+        Returns
+        -------
+        float or None
+            0 if the body stops, negative if it rebounds; None for a compliant wall.
+
+        Raises
+        ------
+        InvalidValueError
+            If the law is Sorrentino's and the body is not a homogeneous rectangle, or the law is plastic and floor and
+            wall do not stop this body without tensile forces.
+        """
+        if self.law == "compliant":
+            return None
+        left, right = (body.side(foot) for foot in FEET)
+        centre, inertia = left.centre_height, left.moment_of_inertia / left.mass - left.semi_diagonal**2
+        height = body.local_box[3] if self.height is None else self.height
+        if self.law == "plastic":
+            if inertia > (left.half_width * right.half_width + centre * (height - centre)) * (1.0 + 1e-9):  # Eq. 360
+                raise InvalidValueError(
+                    "floor and wall do not stop this body without tensile forces", parameter="law", value=self.law,
+                    hint="use a compliant wall, or a larger height",
+                )  # fmt: skip
+            return 0.0
+        is_rectangle = math.isclose(3.0 * inertia, left.semi_diagonal**2, rel_tol=1e-9)
+        if not (is_rectangle and math.isclose(left.half_width, right.half_width, rel_tol=1e-9)):
+            raise InvalidValueError(
+                "this law is for a homogeneous rectangle", parameter="law", value=self.law, hint="use a compliant wall"
+            )
+        sine, cosine = math.sin(left.slenderness_angle), math.cos(left.slenderness_angle)
+        return (1.0 - 1.5 * sine**2) ** 2 * (1.0 - 1.5 * cosine**2)  # Eq. 359
+
+
+KINDS: dict[str, type[Restraint]] = {
+    kind.kind: kind for kind in (Tendon, ViscousDamper, FrictionDamper, Fuse, Spring, Wall)
+}
 """Classes of restraints by the name in files."""

@@ -308,7 +308,7 @@ def _(body: Restrained) -> str:
     for restraint in body.restraints:
         stated = {"kind": restraint.kind, "name": restraint.name, **restraint.constants}
         if restraint.x is not None:
-            stated |= {"x": restraint.x, "length": restraint.length}
+            stated |= {"x": restraint.x} | ({} if restraint.kind == "wall" else {"length": restraint.length})
         else:
             stated |= {"ground": list(restraint.ends[0]), "point": list(restraint.ends[1])}
         if "area" in stated:

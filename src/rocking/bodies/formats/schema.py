@@ -212,12 +212,13 @@ _OF_STIFFNESS = "stiffness in its place"
 class RestraintTable(StrictTable):
     """A restraint between the ground and a point of the body."""
 
-    kind: Literal["tendon", "viscous_damper", "friction_damper", "fuse", "spring"] = Field(
+    kind: Literal["tendon", "viscous_damper", "friction_damper", "fuse", "spring", "wall"] = Field(
         description="kind of the restraint"
     )
     name: str | None = key("name in results", usual="kind and number", allowed="any text: a label of results")
     x: float | None = key(
-        "position on the base, x as for the feet [unit of the file]", usual="x, or ground and point, is required",
+        "position on the base, x as for the feet [unit of the file]",
+        usual="x, or ground and point, is required; wall: the end of the body on its side",
         allowed="any: also outside the base",
     )  # fmt: skip
     length: Cut | None = key("distance of the anchor below the base at x [unit of the file]", usual="0")
@@ -228,7 +229,8 @@ class RestraintTable(StrictTable):
         "attachment point (x, z) on the upright body [unit of the file]", usual="x, or ground and point, is required"
     )
     stiffness: Cut | None = key(
-        "tendon, fuse, spring: stiffness [N/m]", usual="required; of a tendon or area, modulus and free_length"
+        "tendon, fuse, spring, wall: stiffness [N/m]",
+        usual="required; of a tendon or area, modulus and free_length; not for a rigid wall",
     )
     area: Positive | None = key("tendon: cross section [m2]", usual=_OF_STIFFNESS)
     modulus: Positive | None = key("tendon: modulus of elasticity [Pa]", usual=_OF_STIFFNESS)
@@ -245,11 +247,19 @@ class RestraintTable(StrictTable):
     coefficient: Cut | None = key("viscous_damper: coefficient c [N (s/m)^a]", usual="required of a viscous_damper")
     exponent: Exponent | None = key("viscous_damper: exponent a [-]", usual="1")
     slip_force: Cut | None = key("friction_damper: slip force [N]", usual="required of a friction_damper")
-    gap: Cut | None = key("spring: elongation without force [unit of the file]", usual="0")
+    gap: Cut | None = key("spring, wall: displacement without force [unit of the file]", usual="0")
     action: Literal["both", "tension", "compression"] | None = key("spring: direction of the force", usual="both")
+    side: Literal["left", "right"] | None = key("wall: side of the body at the wall", usual="required of a wall")
+    height: Positive | None = key(
+        "wall: height of the point of the body that touches the wall [unit of the file]", usual="top of the body"
+    )
+    damping: Cut | None = key("wall: coefficient of the dashpot [N s/m]", usual="0")
+    law: Literal["compliant", "plastic", "sorrentino"] | None = key("wall: force law", usual="compliant")
 
 
-LENGTHS_OF_RESTRAINTS = ("x", "length", "ground", "point", "free_length", "rupture_elongation", "stroke", "gap")
+LENGTHS_OF_RESTRAINTS = (
+    "x", "length", "ground", "point", "free_length", "rupture_elongation", "stroke", "gap", "height",
+)  # fmt: skip
 """Keys of `RestraintTable` in the unit of the file."""
 
 

@@ -1,1 +1,1 @@
-"""A plane body that rocks about its feet with tendons, dampers, fuses and springs."""
+"""A plane body that rocks about its feet with tendons, dampers, fuses, springs and walls."""

@@ -7,9 +7,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rocking.bodies.restrained import Restrained
+from rocking.bodies.restraints import Wall
 from rocking.conventions import FloatArray
 from rocking.dynamics.restrained.laws import ForceLaw, law_of
 from rocking.dynamics.restrained.levers import Lever
+from rocking.errors import InvalidValueError
+
+BLOCKED = 1e9
+"""Moment of a rigid wall against rotation towards the wall, divided by m g R [-]."""
 
 _ROUNDING = 1e-12  # rounding of a dissipated energy over largest force x range of elongation
 
@@ -50,9 +55,15 @@ class Device:
     def note(self) -> None:
         """Update the extremes with the present values."""
         force, e = self.force(), self.elongation
-        self.largest_force, self.smallest_force = max(self.largest_force, force), min(self.smallest_force, force)
+        if self.law.phase.name == "contact":
+            force = min(force, 0.0)  # without rounding at the end of the contact
+        self.note_force(force)
         self.largest_elongation = max(self.largest_elongation, e)
         self.smallest_elongation = min(self.smallest_elongation, e)
+
+    def note_force(self, force: float) -> None:
+        """Update the extremes of the force."""
+        self.largest_force, self.smallest_force = max(self.largest_force, force), min(self.smallest_force, force)
 
     def move(self, elongation: float, rate: float) -> None:
         """Move to an elongation within a phase. The viscous work is added by the step."""
@@ -105,9 +116,34 @@ def devices_of(body: Restrained, *, linear: bool) -> list[Device]:
     devices = []
     for item in body.restraints:
         law = law_of(item)
+        if isinstance(item, Wall):
+            law.rebound = item.rebound(body.body)
         levers = {side: Lever.of(item, body.body, side, linear=linear) for side in (1, -1)}
         devices.append(Device(law, levers, start_energy=law.stored(0.0)))
     return devices
+
+
+def check_path(body: Restrained, *directions: float) -> None:
+    """Raise an error if a rigid wall prevents a rotation in one of the directions."""
+    for item in body.restraints:
+        if not isinstance(item, Wall) or item.law == "compliant":
+            continue
+        if any(direction * item.sign < 0.0 for direction in directions):
+            raise InvalidValueError(
+                "{name} is rigid: the body cannot rotate to the {side}", parameter="rotation", name=item.name,
+                side=item.side,
+            )  # fmt: skip
+
+
+def blocked(devices: list[Device]) -> dict[int, float]:
+    """Return the ratio of velocities after and before an impact at a rigid wall by the side that it blocks [-]."""
+    return {
+        side: device.law.rebound
+        for device in devices
+        if device.law.rebound is not None
+        for side in (1, -1)
+        if side * device.levers[side].at_rest < 0.0
+    }
 
 
 def moment_at_rest(devices: list[Device], side: int) -> float:

@@ -12,7 +12,7 @@ from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane.equations import Event, EventKind
-from rocking.dynamics.restrained.devices import Device, RestraintEvent, devices_of, without_rounding
+from rocking.dynamics.restrained.devices import Device, RestraintEvent, check_path, devices_of, without_rounding
 from rocking.dynamics.restrained.laws import Phase
 from rocking.dynamics.restrained.reference import RestrainedReference, RestrainedTrajectory
 from rocking.dynamics.restrained.settings import RestrainedSettings
@@ -34,7 +34,7 @@ RESTRAINT_RESULTS = (
 """Results of every restraint of a history."""
 PHASES = (
     "elastic", "yields in tension", "yields in compression", "slack", "broken", "viscous", "sticks", "slips in tension",
-    "slips in compression", "open", "tension", "compression",
+    "slips in compression", "open", "tension", "compression", "contact", "released",
 )  # fmt: skip
 """Names of phases by the codes of the compiled engine."""
 
@@ -85,6 +85,7 @@ def run(
     engine: str = "auto",
 ) -> RestrainedTrajectory:
     """Return one history from theta [rad] and theta' [rad/s]."""
+    check_path(body, *start)
     devices = devices_of(body, linear=settings.linear)
     if chosen(engine, parameters.law) == "reference":
         reference = RestrainedReference(parameters, body.mass, devices, segments, settings, scale, stream)
@@ -94,7 +95,7 @@ def run(
     choices = np.array([0, count, 0, width], np.int64)
     samples = np.zeros((3, count + 1))
     elongation, force, work = (np.zeros((count + 1, width)) for _ in range(3))
-    integers, floats, written, of_body, of_restraints, peaks, states = library_of([segments]).trace(
+    integers, floats, written, of_body, of_restraints, peaks, states, contacts = library_of([segments]).trace(
         numbers, _laws(devices), choices, samples, elongation, force, work, **_common(settings)
     )
     for array in (samples.T, elongation, force, work):
@@ -113,6 +114,7 @@ def run(
     return RestrainedTrajectory(
         samples[0], samples[1], elongation, force, work, samples[2], devices, events, changes,
         [(time, theta) for time, theta in np.reshape(peaks, (-1, 2)).tolist()],
+        [tuple(row) for row in np.reshape(contacts, (-1, 3 + width)).tolist()],
         _OUTCOMES[values["outcome"]], _STATUSES[values["status"]],
         **{name: values[name] for name in (
             "side", "peak_rotation", "peak_time", "peak_velocity", "overturning_time", "impacts", "uplifts",

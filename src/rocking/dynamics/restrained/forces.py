@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking.bodies.restrained import Restrained
+from rocking.bodies.restraints import Wall
 from rocking.conventions import FloatArray
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane import equations
@@ -27,21 +28,26 @@ class RestrainedForces:
     energy_lost: FloatArray  # energy lost at impacts [J]
 
     @classmethod
-    def of(  # noqa: PLR0917 - a history and its inputs
+    def of(  # noqa: PLR0913, PLR0917 - a history and its inputs
         cls,
         body: Restrained,
         parameters: RockingParameters,
         run: RestrainedTrajectory,
         time: FloatArray,
+        states: tuple[FloatArray, FloatArray, FloatArray],
         horizontal: FloatArray,
         vertical: FloatArray,
         gravity: float,
         *,
         linear: bool,
     ) -> "RestrainedForces":
-        """Return the forces at times. `horizontal` and `vertical` are accelerations of the ground [m/s2]."""
+        """Return the forces at times.
+
+        `states` are rotation, angular velocity and forces of restraints, `horizontal` and `vertical` are accelerations
+        of the ground [m/s2].
+        """
         count, mass = time.size, body.mass
-        rotation, velocity = run.rotation[:count], run.angular_velocity[:count]
+        rotation, velocity, force = states
         moving = np.where(rotation != 0.0, rotation, velocity)
         side = np.where(moving < 0.0, -1, 1)
         alpha, p, radius = (
@@ -49,13 +55,15 @@ class RestrainedForces:
             for name in ("slenderness_angle", "frequency_parameter", "semi_diagonal")
         )
         inertia = mass * gravity * radius / p**2
-        force = run.force[:count]
         arms, pull_x, pull_z = (np.zeros_like(force) for _ in range(3))
         for i, restraint in enumerate(body.restraints):
             levers = {sign: Lever.of(restraint, body.body, sign, linear=linear) for sign in (1, -1)}
             for k in range(count):
                 lever = levers[int(side[k])]
                 arms[k, i] = lever.slope(float(rotation[k]))
+                if isinstance(restraint, Wall):
+                    pull_x[k, i] = restraint.sign
+                    continue
                 pull_x[k, i], pull_z[k, i] = direction_of(
                     restraint.ends, body.body.feet, int(side[k]), float(rotation[k])
                 )
@@ -91,10 +99,11 @@ def losses(
     }
     impacts = [event for event in run.events if event.kind is EventKind.IMPACT]
     rests = {event.time for event in run.events if event.kind is EventKind.REST}
-    lost = [
-        0.5 * inertia[-e.side] * e.before**2 - 0.5 * inertia[e.side] * e.after**2 * (e.time not in rests)
-        for e in impacts
-    ]
+    lost = []
+    for e in impacts:
+        old = 1 if e.before < 0.0 else -1
+        after = 0.0 if e.time in rests else e.after
+        lost.append(0.5 * inertia[old] * e.before**2 - 0.5 * inertia[e.side] * after**2)
     totals = np.concatenate([[0.0], np.cumsum(lost)])
     return np.asarray(totals[np.searchsorted([e.time for e in impacts], time, side="right")])
 

@@ -5,7 +5,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import singledispatch
 
-from rocking.bodies.restraints import FrictionDamper, Fuse, Restraint, Spring, Tendon, ViscousDamper
+from rocking.bodies.restraints import FrictionDamper, Fuse, Restraint, Spring, Tendon, ViscousDamper, Wall
 
 _INF = math.inf
 
@@ -39,6 +39,7 @@ class ForceLaw(ABC):
     plastic = 0.0  # plastic elongation [m]
     yields = 0
     lost = 0.0  # energy lost by rupture [J]
+    rebound: float | None = None  # coefficient of restitution at a rigid wall [-]
 
     def settle(self, elongation: float, direction: int) -> None:  # noqa: B027 - most laws have one phase
         """Choose the phase for a sign of e', after uplift, impact, turning point, or reversal of the lever."""
@@ -49,6 +50,10 @@ class ForceLaw(ABC):
     def stored(self, elongation: float) -> float:
         """Return the elastic energy, including the energy of hardening [J]."""
         return 0.0
+
+    def margin(self, elongation: list[float], rate: list[float]) -> list[float] | None:
+        """Return the series that is positive until a force ends the phase; `rate` is e' [m/s]."""
+        return None
 
     def named(self, name: str) -> Phase:
         """Return the phase with a given name in the present state."""
@@ -233,6 +238,47 @@ class Elastic(ForceLaw):
         )
 
 
+class Contact(ForceLaw):
+    """A compliant wall, which only pushes. A rigid wall has no stiffness and no force."""
+
+    def __init__(self, stiffness: float, damping: float, gap: float, rebound: float | None = None) -> None:
+        self.stiffness, self.damping, self.gap, self.rebound = stiffness, damping, gap, rebound
+        self.phase = self.named("open")
+
+    def named(self, name: str) -> Phase:
+        self.coefficient = self.damping if name == "contact" else 0.0
+        if name == "contact":
+            return Phase(name, self.stiffness * self.gap, self.stiffness)
+        if name == "released":  # the point of the body leaves the wall more slowly than the dashpot allows
+            return Phase(name, high=-self.gap)
+        return Phase("open", low=-self.gap if self.stiffness else -_INF)
+
+    def settle(self, elongation: float, direction: int) -> None:
+        if direction < 0 and elongation <= self.phase.low:
+            self.cross(elongation, upwards=False)
+        elif direction > 0 and elongation >= -self.gap and self.phase.name != "open":
+            self.phase = self.named("open")
+
+    def cross(self, elongation: float, *, upwards: bool) -> None:
+        is_released = upwards and self.phase.name == "contact" and self.damping
+        self.phase = self.named("released" if is_released else "open" if upwards else "contact")
+
+    def stored(self, elongation: float) -> float:
+        return 0.5 * self.stiffness * min(elongation + self.gap, 0.0) ** 2
+
+    def margin(self, elongation: list[float], rate: list[float]) -> list[float] | None:
+        if self.phase.name == "open":
+            return None
+        sign = -1.0 if self.phase.name == "contact" else 1.0
+        force = [self.stiffness * e + self.damping * v for e, v in zip(elongation, rate, strict=True)]
+        force[0] += self.stiffness * self.gap
+        return [sign * c for c in force]
+
+    def row(self) -> tuple[float, ...]:
+        is_rigid = self.rebound is not None
+        return 4.0, self.stiffness, self.damping, self.gap, float(is_rigid), self.rebound or 0.0, 0.0
+
+
 @singledispatch
 def law_of(restraint: Restraint) -> ForceLaw:
     """Return the force law of a restraint in its state before the motion."""
@@ -277,3 +323,8 @@ def _(restraint: FrictionDamper) -> ForceLaw:
 @law_of.register
 def _(restraint: Spring) -> ForceLaw:
     return Elastic(restraint.stiffness, restraint.gap, restraint.action)
+
+
+@law_of.register
+def _(restraint: Wall) -> ForceLaw:
+    return Contact(restraint.stiffness or 0.0, restraint.damping, restraint.gap)

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking import checks, quantities
-from rocking.bodies.restrained import Restrained
+from rocking.bodies.restrained import Restrained, without_walls
 from rocking.conventions import FloatArray
 from rocking.dynamics.combined import dataset_of, label_of, plane_inputs
 from rocking.dynamics.impact_laws import ImpactLaw
@@ -29,6 +29,8 @@ AFTER = 15.0  # product of p and the duration after the motion
 def many_with_restraints(cases: Combinations, settings: RestrainedSettings) -> "xr.Dataset":
     """Return the outcome of all combinations, with extremes of all restraints."""
     bodies, motions, scales, starts = plane_inputs(cases, (Restrained,))
+    for body in bodies:
+        without_walls(body)
     restitutions = cases.restitutions
     if any(isinstance(item, ImpactLaw) for item in restitutions):
         raise InvalidValueError(

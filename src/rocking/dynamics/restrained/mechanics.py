@@ -1,10 +1,10 @@
-"""Rocking of a plane body with tendons, dampers, fuses and springs."""
+"""Rocking of a plane body with tendons, dampers, fuses, springs and walls."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from rocking.bodies.restrained import Restrained
+from rocking.bodies.restrained import Restrained, without_walls
 from rocking.conventions import FloatArray
 from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.mechanics_base import Combinations, PlaneMechanics
@@ -53,6 +53,7 @@ class RestrainedRocking(PlaneMechanics):
         return many_with_restraints(combinations, settings)
 
     def study_settings(self, body: Any, options: Mapping[str, Any]) -> Settings:
+        without_walls(body)
         settings, _ = self.split(options, RestrainedSettings, frozenset())
         return RestrainedStudySettings(**settings.stated, body=body)
 

@@ -11,7 +11,7 @@ from rocking import checks, conventions
 from rocking.answers import Answer, AnswerRows
 from rocking.bodies.restrained import Restrained
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.restrained.devices import Device, devices_of
+from rocking.dynamics.restrained.devices import Device, check_path, devices_of
 from rocking.errors import InvalidValueError
 
 if TYPE_CHECKING:
@@ -149,6 +149,7 @@ def pushover(
     path = np.atleast_1d(checks.real_array("rotation", rotation, "rad"))
     if path.ndim != 1 or not path.size or not np.all(np.abs(path) < 0.5 * math.pi):
         raise InvalidValueError(parameter="rotation", allowed="a row within a quarter turn [rad]", value=path.shape)
+    check_path(restrained, *path.tolist())
     devices, body = devices_of(restrained, linear=linear), restrained.body
     angles, sides = _with_upright(path)
     shape = (angles.size, len(devices))

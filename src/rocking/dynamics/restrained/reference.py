@@ -13,7 +13,7 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane.equations import Event, EventKind
 from rocking.dynamics.plane.event_functions import NOTHING, Push, RestoringMoments, comes_to_rest
-from rocking.dynamics.restrained.devices import Device, RestraintEvent, moment_at_rest
+from rocking.dynamics.restrained.devices import BLOCKED, Device, RestraintEvent, blocked, moment_at_rest
 from rocking.dynamics.restrained.series import Equation, Poly, RestraintSeries, series
 from rocking.dynamics.restrained.settings import RestrainedSettings
 from rocking.dynamics.taylor import first_fall, shifted, slope, value
@@ -27,6 +27,7 @@ _TIE = 1e-11  # as a fraction of a step
 _ROUNDING, _MOST_AT_ONCE = 1e-9, 1000
 _AFTER = 30.0  # product of p and the time on ground at rest that determines the outcome
 _SHORTER, _SHORTEST = 1e-4, 1e-20  # as fractions of a stretch
+_INSTANTS = 32  # instants per step at which the contact with a wall is recorded
 _SINGULAR = 1e-14  # speed over p alpha near a turning point, for a damper with an exponent other than 1
 
 
@@ -51,6 +52,7 @@ class RestrainedTrajectory:
     events: list[Event] = field(default_factory=list)  # events of the body, in order of time
     restraint_events: list[RestraintEvent] = field(default_factory=list)
     peaks: list[tuple[float, float]] = field(default_factory=list)  # turning points: time [s], theta [rad]
+    contacts: list[tuple[float, ...]] = field(default_factory=list)  # t, theta, theta' and forces in contact with walls
     outcome: Outcome = Outcome.NO_UPLIFT
     status: Status = Status.GOOD
     side: int = 0  # side of overturning
@@ -96,6 +98,7 @@ class RestrainedReference:
         self.push = Push(segments.step, segments.horizontal * over_g, vertical * over_g)
         self.parameters, self.settings, self.stream, self.mass = parameters, settings, stream, mass
         self.count, self.devices = segments.count, devices
+        self.blocked = blocked(devices)
         self.equations = {side: self._equation(side) for side in (1, -1)}
         shape = (self.count + 1, len(devices))
         self.out = RestrainedTrajectory(
@@ -164,12 +167,14 @@ class RestrainedReference:
         if not fraction > 0.0:  # near a turning point with a power-law damper
             too_short = width < _SHORTEST or not any(item.root for item in items)
             return self._end(Outcome.FAILED, Status.NOT_FINITE) if too_short else self._step(_SHORTER * width)
-        event = self._first_event(terms, items, fraction)
+        event = self._first_event(terms, items, fraction, h)
         x = fraction if event is None else event.x * fraction
         self.at_once = 0 if x > 0.0 else self.at_once + 1
         if self.at_once > _MOST_AT_ONCE:
             return self._end(Outcome.FAILED, Status.STUCK)
         self._add_work(terms, items, x, h, push, weight)
+        if any(device.law.phase.name == "contact" for device in self.devices):
+            self._note_contact(terms, items, x, width)
         self.theta, self.rate = value(terms, x), slope(terms, x) / h
         self.out.peak_velocity = max(self.out.peak_velocity, abs(self.rate))
         self._carry(event)
@@ -192,7 +197,7 @@ class RestrainedReference:
                     fraction = min(fraction, (bound / size) ** (1.0 / power))  # Eq. 52
         return fraction
 
-    def _first_event(self, terms: Poly, items: list[RestraintSeries], fraction: float) -> _Next | None:
+    def _first_event(self, terms: Poly, items: list[RestraintSeries], fraction: float, h: float) -> _Next | None:
         theta, side = _scaled(terms, fraction), self.side
         rate = [self.direction * k * c for k, c in enumerate(theta)][1:]
         events = [_Next(x, "impact") for x in _falls([side * c for c in theta])]
@@ -204,6 +209,9 @@ class RestrainedReference:
                     gap = _scaled(item.elongation, fraction, sign)
                     gap[0] = sign * (device.elongation - limit)
                     events += [_Next(x, "limit", device, upwards=sign < 0.0) for x in _falls(gap)]
+            if margin := device.law.margin(item.elongation, [c / h for c in item.rate]):
+                ends = _falls(_scaled(margin, fraction))
+                events += [_Next(x, "limit", device, upwards=phase.name == "contact") for x in ends]
             if phase.direction and item.slope[0]:
                 events += [
                     _Next(x, "lever", device)
@@ -229,6 +237,19 @@ class RestrainedReference:
         for device, item in zip(self.devices, items, strict=True):
             if item.viscous:
                 device.work += x * _integral(_product(_scaled(item.viscous, x), _scaled(item.rate, x)))
+
+    def _note_contact(self, terms: Poly, items: list[RestraintSeries], x: float, width: float) -> None:
+        """Record time, state and forces at instants of a step in contact with a wall."""
+        for k in range(self.rate == 0.0, _INSTANTS + 1):
+            y = x * k / _INSTANTS
+            forces = [
+                item.law.phase.force(value(item.elongation, y)) + (value(item.viscous, y) if item.viscous else 0.0)
+                for item in items
+            ]
+            for device, force in zip(self.devices, forces, strict=True):
+                device.note_force(min(force, 0.0) if device.law.phase.name == "contact" else force)
+            time, h = self.now + y * width * self.push.step, width * self.push.step
+            self.out.contacts.append((time, value(terms, y), slope(terms, y) / h, *forces))
 
     # ---- next to a turning point with a damper of a power --------------------------------------------------------
 
@@ -273,10 +294,13 @@ class RestrainedReference:
         self._lose_contact_angle()
         self.theta, before = 0.0, self.rate
         speed, old = abs(before), self.side
-        self.side = -old
         out = self.out
-        r = self.parameters.coefficient(self.side, speed, self.stream, out.impacts)
-        self.rate = r * before  # Eq. 28
+        if -old in self.blocked:
+            r = self.blocked[-old]
+        else:
+            self.side = -old
+            r = self.parameters.coefficient(self.side, speed, self.stream, out.impacts)
+        self.rate = r * before + 0.0  # Eq. 28; not -0 after a stop
         out.impacts += 1
         out.events.append(Event(self.now, EventKind.IMPACT, self.side, before, self.rate, r))
         if out.impacts >= self.settings.most_events:
@@ -285,7 +309,7 @@ class RestrainedReference:
             return None if self.ended else self._end(Outcome.ROCKED)
         for device in self.devices:
             device.elongation = 0.0
-        if self._decays(r * speed):
+        if self._decays(abs(r) * speed):
             out.events.append(Event(self.now, EventKind.REST, self.side))
             self.rate = 0.0
             for device in self.devices:
@@ -294,7 +318,8 @@ class RestrainedReference:
         return self._head(self.side)
 
     def _decays(self, after: float) -> bool:
-        rest_speed = 0.0 if any(device.law.slip_force for device in self.devices) else self.settings.rest_speed
+        exact = self.blocked or any(device.law.slip_force for device in self.devices)
+        rest_speed = 0.0 if exact else self.settings.rest_speed
         return comes_to_rest(self.parameters, self._holding(), self.side, after, self.stretch, self.tau, rest_speed)
 
     def _head(self, direction: int) -> None:
@@ -305,6 +330,8 @@ class RestrainedReference:
             before, phase = device.force(), device.law.phase
             device.law.settle(device.elongation, int(math.copysign(1, arm * direction)) if arm else 0)
             device.rate = arm * self.rate
+            if device.law.phase.name == "contact" and device.force() > 0.0:
+                device.law.cross(device.elongation, upwards=True)
             if device.law.phase is not phase:
                 self._note_phase(device, before)
 
@@ -374,7 +401,7 @@ class RestrainedReference:
         for side in (1, -1):
             half = self.parameters.side(side)
             unit = self.mass * self.settings.gravity * half.semi_diagonal
-            more[side] = moment_at_rest(self.devices, side) / unit  # Eq. 353
+            more[side] = moment_at_rest(self.devices, side) / unit + BLOCKED * (side in self.blocked)  # Eq. 353
         if self._ground is None or self._ground.more != more:
             self._ground = RestoringMoments(self.parameters, self.push, linear=self.settings.linear, more=more)
         return self._ground

@@ -10,6 +10,7 @@ import numpy as np
 from rocking import checks, errors, plausibility
 from rocking.answers import Answer, AnswerRows
 from rocking.bodies.restrained import Restrained
+from rocking.bodies.restraints import Wall
 from rocking.conventions import FEET, FloatArray
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane.equations import EventKind
@@ -32,7 +33,14 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _FINE, _AFTER, _FREE = 0.05, 15.0, 300.0  # products of p with time step and durations, as without restraints
-_TENSILE = "the contact force becomes tensile, up to {force:.2g} of the weight: the body would leave the ground"
+_TENSILE = (
+    "the contact force becomes tensile at {time:.4g} s, up to {force:.2g} of the weight: from this time the body would "
+    "leave the ground, and the model does not apply"
+)
+_REBOUND = (
+    "{name}: the rebound of Sorrentino et al. (2008) is empirical; it needs friction at the wall and a floor that "
+    "pulls the body"
+)
 _SIDES = {1: "right", -1: "left"}
 
 
@@ -136,9 +144,20 @@ class RestrainedResponse(ResponseBase):
     @cached_property
     def forces(self) -> RestrainedForces:
         """Forces of the ground and energy at the samples."""
+        states = self.rotation, self.angular_velocity, self.restraint_force
+        ground = self._at_samples(self.segments.horizontal), self._at_samples(self.segments.vertical)
+        return self._forces(self.time, states, *ground)
+
+    def _forces(
+        self,
+        time: FloatArray,
+        states: tuple[FloatArray, FloatArray, FloatArray],
+        horizontal: FloatArray,
+        vertical: FloatArray,
+    ) -> RestrainedForces:
         return RestrainedForces.of(
-            self.body, self.parameters, self.trajectory, self.time, self._at_samples(self.segments.horizontal),
-            self._at_samples(self.segments.vertical), self.settings.gravity, linear=self.settings.linear,
+            self.body, self.parameters, self.trajectory, time, states, horizontal, vertical, self.settings.gravity,
+            linear=self.settings.linear,
         )  # fmt: skip
 
     @property
@@ -155,13 +174,42 @@ class RestrainedResponse(ResponseBase):
             values[moving[-1] + 1] = self.scale * polynomials[moving[-1]].sum()
         return np.asarray(values[: self.time.size])
 
+    def _at_times(self, polynomials: FloatArray | None, time: FloatArray) -> FloatArray:
+        """Return the ground acceleration at any times [m/s2]."""
+        if polynomials is None:
+            return np.zeros(time.size)
+        stretch = np.minimum((time / self.segments.step).astype(int), len(polynomials))
+        rows = np.vstack([polynomials, np.zeros(polynomials.shape[1])])[stretch]
+        powers = np.vander(time / self.segments.step - stretch, rows.shape[1], increasing=True)
+        return np.asarray(self.scale * (rows * powers).sum(axis=1))
+
+    @cached_property
+    def _normal_forces(self) -> tuple[FloatArray, FloatArray]:
+        """Times, and contact forces divided by the weight, at the samples and during contact with walls."""
+        time, force, weight = self.time, self.forces.vertical_force, self.body.mass * self.settings.gravity
+        contacts = np.array(self.trajectory.contacts).reshape(-1, 3 + len(self.body.restraints))
+        if contacts.size:
+            at, ground = contacts[:, 0], (self.segments.horizontal, self.segments.vertical)
+            states = contacts[:, 1], contacts[:, 2], contacts[:, 3:]
+            between = self._forces(at, states, *(self._at_times(rows, at) for rows in ground))
+            order = np.argsort(np.append(time, at), kind="stable")
+            time, force = np.append(time, at)[order], np.append(force, between.vertical_force)[order]
+        shown = slice(None) if math.isnan(self.overturning_time) else time <= self.overturning_time
+        return time[shown], force[shown] / weight
+
     @cached_property
     def least_force(self) -> float:
-        """Smallest normal contact force at the samples, divided by the weight [-]. A negative force is tensile."""
-        weight = self.body.mass * self.settings.gravity
-        over = self.overturning_time
-        shown = slice(None) if math.isnan(over) else self.time <= over
-        return float(np.min(self.forces.vertical_force[shown], initial=math.inf)) / weight
+        """Smallest normal contact force divided by the weight [-]. A negative force is tensile.
+
+        The instants are the samples, and 32 instants of each step in contact with a wall.
+        """
+        return float(np.min(self._normal_forces[1], initial=math.inf))
+
+    @property
+    def lost_contact_time(self) -> float:
+        """Time from which the contact force is tensile, so that the model does not apply; NaN without tension [s]."""
+        time, force = self._normal_forces
+        return float(np.append(time[force < 0.0], math.nan)[0])
 
     @property
     def lost_contact(self) -> bool:
@@ -216,7 +264,7 @@ class RestrainedResponse(ResponseBase):
             "body": self.body.answer(self.settings.gravity), "motion": motion_answer(self.motion, self.scale),
             "initial_rotation": float(self.rotation[0]), "restitution": self.parameters.label,
             "linear": self.settings.linear, "uplift_times": self.uplifts, "energy_closure": self.energy_closure,
-            "least_force": self.least_force, "warnings": self.doubts(),
+            "least_force": self.least_force, "lost_contact_time": self.lost_contact_time, "warnings": self.doubts(),
         }  # fmt: skip
 
     def doubts(self) -> list[str]:
@@ -227,7 +275,14 @@ class RestrainedResponse(ResponseBase):
         list of str
             Sentences; empty if the model is credible.
         """
-        return [Message(_TENSILE, {"force": -self.least_force})] if self.lost_contact else []
+        reasons: list[str] = [
+            Message(_REBOUND, {"name": restraint.name})
+            for restraint in self.body.restraints
+            if isinstance(restraint, Wall) and restraint.law == "sorrentino"
+        ]
+        if self.lost_contact:
+            reasons.append(Message(_TENSILE, {"time": self.lost_contact_time, "force": -self.least_force}))
+        return reasons
 
     @property
     def _values(self) -> dict[str, Any]:

@@ -47,12 +47,19 @@ class RestraintSeries:
             moment = lever.at_rest * (stiffness * self.elongation[k] + (0.0 if k else constant))
         else:
             along = lever.along * sines[k] - lever.across * cosines[k]
-            if lever.length:
+            if lever.is_parallel:
+                slope.append(along)
+                self._extend_elongation(k, theta)
+            elif lever.length:
                 self._extend_slope(k, along, theta[0])
             else:
                 slope.append(lever.radius * half[k])
                 self._extend_elongation(k, theta)
-            moment = (constant - stiffness * lever.length) * slope[k] + stiffness * along  # Eq. 347
+            if lever.is_parallel:
+                moment = constant * slope[k]
+                moment += stiffness * sum(map(mul, self.elongation, slope[k::-1])) if stiffness else 0.0
+            else:
+                moment = (constant - stiffness * lever.length) * slope[k] + stiffness * along  # Eq. 347
         self.rate.append(sum((j + 1) * theta[j + 1] * slope[k - j] for j in range(k + 1)))
         if law.coefficient and self.is_viscous:
             self._extend_viscous(k, h)
