@@ -156,7 +156,7 @@ struct Lever {
     double elongation(double s, double c) const {  // s, c: sine and cosine of half the rotation
         if (length == 0.0) return 2.0 * radius * s;  // Eq. 344
         const double change = 4.0 * s * (along * s - across * c);
-        if (parallel) return 0.5 * change;  // Eq. 358
+        if (parallel) return 0.5 * change;  // Eq. 364
         return change / (length + std::sqrt(length * length + change));  // Eq. 343
     }
     double slope(double rotation) const {

@@ -553,7 +553,7 @@ class Wall(Restraint):
         centre, inertia = left.centre_height, left.moment_of_inertia / left.mass - left.semi_diagonal**2
         height = body.local_box[3] if self.height is None else self.height
         if self.law == "plastic":
-            if inertia > (left.half_width * right.half_width + centre * (height - centre)) * (1.0 + 1e-9):  # Eq. 360
+            if inertia > (left.half_width * right.half_width + centre * (height - centre)) * (1.0 + 1e-9):  # Eq. 366
                 raise InvalidValueError(
                     "floor and wall do not stop this body without tensile forces", parameter="law", value=self.law,
                     hint="use a compliant wall, or a larger height",
@@ -565,7 +565,7 @@ class Wall(Restraint):
                 "this law is for a homogeneous rectangle", parameter="law", value=self.law, hint="use a compliant wall"
             )
         sine, cosine = math.sin(left.slenderness_angle), math.cos(left.slenderness_angle)
-        return (1.0 - 1.5 * sine**2) ** 2 * (1.0 - 1.5 * cosine**2)  # Eq. 359
+        return (1.0 - 1.5 * sine**2) ** 2 * (1.0 - 1.5 * cosine**2)  # Eq. 367
 
 
 KINDS: dict[str, type[Restraint]] = {

@@ -272,7 +272,7 @@ class Contact(ForceLaw):
         sign = -1.0 if self.phase.name == "contact" else 1.0
         force = [self.stiffness * e + self.damping * v for e, v in zip(elongation, rate, strict=True)]
         force[0] += self.stiffness * self.gap
-        return [sign * c for c in force]
+        return [sign * c for c in force]  # Eq. 365
 
     def row(self) -> tuple[float, ...]:
         is_rigid = self.rebound is not None

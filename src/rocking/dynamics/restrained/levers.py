@@ -65,7 +65,7 @@ class Lever:
             return 2.0 * self.radius * sine  # Eq. 344
         change = 4.0 * sine * (self.along * sine - self.across * cosine)
         if self.is_parallel:
-            return 0.5 * change  # Eq. 358
+            return 0.5 * change  # Eq. 364
         return change / (self.length + math.sqrt(self.length**2 + change))  # Eq. 343
 
     def slope(self, rotation: float) -> float:
