@@ -7,6 +7,7 @@ from . import motions as motions
 from . import plots as plots
 from . import restitution as restitution
 from .bodies import Block as Block
+from .bodies import Frame as Frame
 from .bodies import FrictionDamper as FrictionDamper
 from .bodies import Fuse as Fuse
 from .bodies import MassPoints as MassPoints

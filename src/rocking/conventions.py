@@ -64,6 +64,9 @@ DEFAULT_FRICTION: Final = Assumed(0.5)
 DEFAULT_RESTITUTION: Final = "calibrated"
 """Default restitution model of all mechanics."""
 
+FRAME_RESTITUTION: Final = "projection of the frame"
+"""Label of the default restitution of a frame, for which the default model has no measurements."""
+
 COMPARED_RESTITUTIONS: Final = ("ked", "housner")
 """Restitution models for comparison with the default model."""
 

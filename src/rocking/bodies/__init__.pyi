@@ -3,6 +3,7 @@ from . import solid as solid
 from .block import Block as Block
 from .body import Body as Body
 from .body import Side as Side
+from .frame import Frame as Frame
 from .mass_points import MassPoints as MassPoints
 from .region import Region as Region
 from .restrained import PLANE_BODIES as PLANE_BODIES

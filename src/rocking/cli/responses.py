@@ -6,6 +6,7 @@ from typing import Any
 
 from rocking.answers import Answer, Display
 from rocking.bodies import PLANE_BODIES
+from rocking.bodies.frame import is_frame
 from rocking.cli.compared import by_foot, grouped, spanned
 from rocking.cli.page import Page, sentence
 from rocking.conventions import COMPARED_RESTITUTIONS, DEFAULT_RESTITUTION, given_or_assumed
@@ -71,7 +72,7 @@ def answer_of(
     if not problem.mechanics.is_compared:
         is_default = next(iter(problem.restitutions)) == DEFAULT_RESTITUTION
         models = {restitution_label(name, problem.body): name for name in COMPARED_RESTITUTIONS if is_default}
-    elif not listed:
+    elif not listed and not is_frame(problem.body):
         from rocking.evidence._coefficient_table import default_models
 
         models = {model.label: model for model in default_models() if model.label != response.parameters.label}

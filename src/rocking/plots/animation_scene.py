@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rocking.bodies import Block, Body, MassPoints, Section
+from rocking.bodies import Body, MassPoints, Section
+from rocking.bodies.frame import section_of
 from rocking.conventions import FloatArray
 from rocking.dynamics.plane import equations
 from rocking.dynamics.response import Response
@@ -41,7 +42,7 @@ class DrawnShape:
         left, right = body.local_feet
         middle = 0.5 * (left + right)
         moments = body.local_moments
-        solid = body.to_section() if isinstance(body, Block) else body
+        solid = section_of(body)
         regions: list[tuple[float, list[FloatArray]]] = []
         points = np.empty((0, 3))
         if isinstance(solid, Section):

@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rocking.bodies import Block, Body, MassPoints, Restrained, Section
+from rocking.bodies import Body, MassPoints, Restrained, Section
+from rocking.bodies.frame import section_of
 from rocking.conventions import FloatArray, Foot
 from rocking.evidence._coefficient_table import CALIBRATED, CoefficientRow
 from rocking.evidence.measurements import all_measurements
@@ -147,7 +148,7 @@ def _restraints(axes: "Axes", body: Restrained) -> None:
 
 def outlines(body: Body) -> "list[tuple[Path, float]]":
     """Return regions with their holes as paths [m], and density over the largest density; empty for mass points."""
-    section = body.to_section() if isinstance(body, Block) else body
+    section = section_of(body)
     if not isinstance(section, Section):
         return []
     densest = max(region.density for region in section.regions)

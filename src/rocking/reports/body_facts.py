@@ -9,7 +9,8 @@ import numpy as np
 
 from rocking import checks
 from rocking.answers import Answer, AnswerRows
-from rocking.bodies import Block, Body, MassPoints, Section
+from rocking.bodies import Body, MassPoints, Section
+from rocking.bodies.frame import section_of
 from rocking.conventions import FEET, FloatArray, Foot
 from rocking.errors import InvalidValueError
 from rocking.evidence._coefficient_table import CoefficientRow, coefficient_table, default_models
@@ -40,7 +41,7 @@ def outline_answer(body: Body) -> Answer:
 
 
 def _polygons(body: Body) -> list[dict[str, Any]]:
-    section = body.to_section() if isinstance(body, Block) else body
+    section = section_of(body)
     if not isinstance(section, Section):
         return []
     shift = np.array([section.origin_x, section.ground])

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from rocking import checks
-from rocking.bodies import Block, Body
+from rocking.bodies import Block, Body, Frame
 from rocking.conventions import BoolArray, FloatArray, Foot
 from rocking.errors import InvalidValueError
 from rocking.messages import Message
@@ -129,6 +129,26 @@ class RestitutionModel(ABC):
             theta_dot_after / theta_dot_before [-].
         """
 
+    def of_frame(self, frame: Frame, foot: Foot) -> float:
+        """Return the coefficient of a frame. By default, raise an error: models apply to single bodies.
+
+        Parameters
+        ----------
+        frame : Frame
+            Columns with a beam.
+        foot : {"left", "right"}
+            The foot on which each column lands.
+
+        Returns
+        -------
+        float
+            theta_dot_after / theta_dot_before [-].
+        """
+        raise InvalidValueError(
+            "the model {model} applies to single bodies; for a frame use housner, the projection of the frame, or a "
+            "coefficient", parameter="restitution", model=self.name,
+        )  # fmt: skip
+
     def raw_of_slenderness(self, slenderness: FloatArray) -> FloatArray:
         """Return the values of the equation of the model for homogeneous rectangles.
 
@@ -167,7 +187,8 @@ class RestitutionModel(ABC):
             If the foot is unknown or the model does not return a finite number.
         """
         checks.of_kind("body", body, Body, "a Block, Section or MassPoints")
-        raw = checks.number(f"coefficient of model {self.name}", self.raw_coefficient(body, checks.foot("foot", foot)))
+        equation = self.of_frame if isinstance(body, Frame) else self.raw_coefficient
+        raw = checks.number(f"coefficient of model {self.name}", equation(body, checks.foot("foot", foot)))  # type: ignore[arg-type]
         return Restitution(self, raw, max(raw, 0.0), (Flag.STOPS,) if raw <= 0.0 else ())
 
     def coefficient(self, body: Body, foot: Foot = "right") -> float:

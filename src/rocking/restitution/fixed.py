@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking import checks, plausibility
-from rocking.bodies import Body
+from rocking.bodies import Body, Frame
 from rocking.conventions import FloatArray, Foot
 from rocking.restitution._model import RestitutionModel
 
@@ -51,6 +51,9 @@ class Fixed(RestitutionModel):
         plausibility.warn(plausibility.of_coefficient(self.r))
 
     def raw_coefficient(self, body: Body, foot: Foot) -> float:
+        return self.r
+
+    def of_frame(self, frame: Frame, foot: Foot) -> float:
         return self.r
 
     def raw_of_slenderness(self, slenderness: FloatArray) -> FloatArray:

@@ -1,6 +1,6 @@
 """Sentence with the restitution model of a result and the reason for the model."""
 
-from rocking.conventions import COMPARED_RESTITUTIONS, DEFAULT_RESTITUTION
+from rocking.conventions import COMPARED_RESTITUTIONS, DEFAULT_RESTITUTION, FRAME_RESTITUTION
 from rocking.messages import Message
 from rocking.restitution.calibrated import KEPT, kept
 
@@ -11,6 +11,10 @@ _DEFAULT = (
 _DEFAULT_3D = (
     "Restitution model of the result: {model}. It is the default because its plane form is fitted to {count} "
     "published measurements; there is no measurement in 3D."
+)
+_FRAME = (
+    "Restitution model of the result: {model}, Housner's model with impulses at both ends of each column. There are no "
+    "published measurements of frames."
 )
 _STATED = "Restitution model of the result: {model}, as stated in the input."
 _ASSESSED = (
@@ -44,6 +48,8 @@ def headline(label: str, *, in_space: bool = False, is_stated: bool = False, cas
     >>> str(headline("ked")), str(headline("calibrated", is_stated=True))[-23:]
     ('Restitution model of the result: ked, as stated in the input.', 'as stated in the input.')
     """
+    if label == FRAME_RESTITUTION and not case:
+        return Message(_FRAME, {"model": Message(FRAME_RESTITUTION)})
     name = label.removesuffix("-3d")
     model = label_of(name, in_space=True) if in_space and name == DEFAULT_RESTITUTION else label
     facts: dict[str, str | int] = {"model": model, **({"case": case} if case else {})}

@@ -2,7 +2,8 @@
 
 from dataclasses import dataclass
 
-from rocking.conventions import FloatArray
+from rocking.bodies import Frame
+from rocking.conventions import FloatArray, Foot
 from rocking.restitution._model import InertiaModel
 from rocking.restitution.impact import ImpactGeometry
 
@@ -42,3 +43,7 @@ class Housner(InertiaModel):
         """Return r by Eq. 4 of Mao et al. (2024), for any inertia and asymmetric feet [-]."""
         # Eq. 2; Eq. 4, Mao et al. 2024
         return (geometry.base_gyration - geometry.old_lever * geometry.new_lever) / geometry.new_gyration
+
+    def of_frame(self, frame: Frame, foot: Foot) -> float:
+        """Return the projection of the frame, with impulses at both ends of each column [-]."""
+        return frame.projection(foot)  # Eq. 371

@@ -5,6 +5,7 @@ import warnings
 from dataclasses import dataclass
 
 from rocking.bodies import Body, MassPoints
+from rocking.bodies.frame import refuse_frame
 from rocking.conventions import Foot, opposite
 from rocking.errors import PlausibilityWarning
 from rocking.restitution._implied import implied
@@ -118,6 +119,7 @@ def identity_report(body: Body, model: RestitutionModel, *, foot: Foot = "right"
 
 def _dumbbells(body: Body) -> list[MassPoints]:
     """Return pairs of masses with mass, centre and polar inertia of the body: horizontal and, if possible, vertical."""
+    refuse_frame(body)
     moments = body.local_moments
     arm = math.sqrt(moments.polar / moments.mass)
     arms = [(arm, 0.0)] + ([(0.0, arm)] if arm <= moments.y else [])

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking.bodies import Body
+from rocking.bodies.frame import refuse_frame
 from rocking.conventions import FloatArray, Foot, opposite
 
 
@@ -59,6 +60,7 @@ class ImpactGeometry:
         ImpactGeometry
             Geometry; its fields are zero-dimensional arrays.
         """
+        refuse_frame(body)
         new, old, moments = body.side(foot), body.side(opposite(foot)), body.local_moments
         return cls(
             np.asarray(moments.y),

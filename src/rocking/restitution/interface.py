@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from rocking import checks
-from rocking.bodies import Body
+from rocking.bodies import Body, Frame
 from rocking.conventions import FloatArray, Foot
 from rocking.errors import UnknownModelError
 from rocking.restitution._model import RestitutionModel
@@ -70,6 +70,9 @@ class Interface(RestitutionModel):
 
     def raw_coefficient(self, body: Body, foot: Foot) -> float:
         return self.eta * self.model.raw_coefficient(body, foot)  # Eq. 112
+
+    def of_frame(self, frame: Frame, foot: Foot) -> float:
+        return self.eta * self.model.of_frame(frame, foot)  # Eq. 112
 
     def raw_of_slenderness(self, slenderness: FloatArray) -> FloatArray:
         return self.eta * self.model.raw_of_slenderness(slenderness)  # Eq. 112

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from rocking import checks, plausibility
-from rocking.bodies import Body
-from rocking.conventions import DEFAULT_RESTITUTION, FEET, Foot
+from rocking.bodies import Body, Frame
+from rocking.conventions import DEFAULT_RESTITUTION, FEET, FRAME_RESTITUTION, Foot
 from rocking.errors import InvalidValueError, UnknownModelError
 from rocking.restitution._implied import energy_bound
 from rocking.restitution._model import RestitutionModel
@@ -238,6 +238,8 @@ def of_no_kind(restitution: object) -> str:
 
 def coefficients_of(restitution: Any, body: Body) -> tuple[dict[Foot, float], str]:
     """Return the coefficients for landing left and right [-], and their label."""
+    if restitution == DEFAULT_RESTITUTION and isinstance(body, Frame):
+        return {foot: Housner().coefficient(body, foot) for foot in FEET}, FRAME_RESTITUTION
     if isinstance(restitution, (str, RestitutionModel)):
         resolved = model(restitution)
         return {foot: resolved.coefficient(body, foot) for foot in FEET}, resolved.label
@@ -334,6 +336,8 @@ def coefficient_of_restitution(
     >>> [round(rk.coefficient_of_restitution(cabinet, "housner", foot=foot), 4) for foot in ("left", "right")]
     [0.7818, 0.6825]
     """
+    if restitution == DEFAULT_RESTITUTION and isinstance(body, Frame):
+        restitution = Housner.name
     if isinstance(restitution, (str, RestitutionModel)):
         return model(restitution, eta=eta, **parameters).coefficient(body, foot)
     if parameters:

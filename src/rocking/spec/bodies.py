@@ -14,7 +14,7 @@ from rocking.checks import length_unit
 from rocking.errors import InvalidValueError
 from rocking.spec.reading import InputFiles, tables_in
 
-_OUTSIDE = ("units", "name", "note", "restraint")
+_OUTSIDE = ("units", "name", "note", "frame", "restraint")
 
 
 def body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body:

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from rocking import plausibility
 from rocking.bodies import Body
+from rocking.bodies.frame import is_frame
 from rocking.bodies.solid import Solid
-from rocking.conventions import FEET
+from rocking.conventions import DEFAULT_RESTITUTION, FEET, FRAME_RESTITUTION
 from rocking.dynamics.mechanics import mechanics_for_all
 from rocking.dynamics.mechanics_base import Mechanics
 from rocking.errors import InvalidValueError, located
@@ -69,6 +70,8 @@ def restitutions_of(
             )
         if table.distribution is not None:
             laws_by_label.append(_sampled_restitution(table.distribution, seed, bodies, inputs))
+        if any(map(is_frame, bodies)) and [label for label, _ in laws_by_label] == [DEFAULT_RESTITUTION]:
+            laws_by_label = [(FRAME_RESTITUTION, DEFAULT_RESTITUTION)]
         labels = [label for label, _ in laws_by_label]
         if twice := next((label for label in labels if labels.count(label) > 1), None):
             raise InvalidValueError("{names} appears twice. Remove one.", names=twice)

@@ -51,6 +51,7 @@ _BODIES: dict[str, type[BaseModel]] = {
     "section": schema.SectionTable,
     "[section.region]": schema.RegionTable,
     "mass_points": schema.MassPointsTable,
+    "frame": schema.FrameTable,
     "[restraint]": schema.RestraintTable,
     "solid": schema.SolidTable,
     "[solid.part]": schema.PartTable,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking.bodies import PLANE_BODIES, Body
-from rocking.conventions import COMPARED_RESTITUTIONS, FloatArray, g
+from rocking.conventions import COMPARED_RESTITUTIONS, FRAME_RESTITUTION, FloatArray, g
 from rocking.dynamics.mechanics import mechanics_of, study_settings
 from rocking.dynamics.parameters import sides_of
 from rocking.dynamics.settings import Settings
@@ -86,7 +86,10 @@ class StudyProblem:
     def with_compared_models(self) -> dict[str, "StudyProblem"]:
         """The problem with each compared restitution model; empty if the document states a restitution."""
         stated = "restitution" in self.document.model_fields_set | {axis.name for axis in self.document.axes}
-        return {} if stated else {name: replace(self, restitutions={name: name}) for name in COMPARED_RESTITUTIONS}
+        compared = not stated and FRAME_RESTITUTION not in self.restitutions
+        return (
+            {} if not compared else {name: replace(self, restitutions={name: name}) for name in COMPARED_RESTITUTIONS}
+        )
 
     def answer(self, progress: Callable[[int], None] | None = None, threads: int | None = None) -> Any:
         """Compute the study in memory."""

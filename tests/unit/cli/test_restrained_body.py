@@ -1,4 +1,4 @@
-"""Commands with a body file that has `[[restraint]]`."""
+"""Commands with a body file that has `[[restraint]]` or `[frame]`."""
 
 import json
 
@@ -42,3 +42,18 @@ def test_a_3d_picture_refuses_restraints(run, file, tmp_path):
     code, _, err = run("restitution", file(PIER, "pier.toml"), "--output", tmp_path / "pier.glb")
     assert code != 0
     assert REFUSAL in err
+
+
+FRAME = BLOCK + "[frame]\ncolumns = 3\nbeam_mass = 5000\n"
+
+
+def test_simulate_names_the_projection(run, file):
+    """The command states the coefficient of the frame and compares no models of single bodies."""
+    path = file(FRAME, "frame.toml")
+    code, out, _ = run("simulate", path, "sine:amplitude=4,period=0.8")
+    assert code == 0
+    assert "Restitution: projection of the frame, r = " in out
+    assert "There are no published measurements of frames." in out
+    answer = json.loads(run("simulate", path, "sine:amplitude=4,period=0.8", "--json")[1])
+    assert answer["body"]["beam_mass"] == 5000.0
+    assert answer["other_models"] == {}

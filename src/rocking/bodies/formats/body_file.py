@@ -17,6 +17,7 @@ from rocking.bodies.formats.dxf import regions_from_dxf
 from rocking.bodies.formats.geojson import regions_from_geojson
 from rocking.bodies.formats.wkt import regions_from_wkt
 from rocking.bodies.formats.words import check_count, read_text, validated
+from rocking.bodies.frame import Frame
 from rocking.bodies.mass_points import MassPoints
 from rocking.bodies.region import Region
 from rocking.bodies.restrained import Restrained
@@ -78,6 +79,9 @@ def body_from_tables(tables: dict[str, Any], folder: str | Path | None = None) -
         raise BodyFileError("This is a 3D body, [solid]; a 2D body is needed.")
     document = validated(BodyFile, tables)
     body = _without_restraints(document, folder)
+    if document.frame:
+        with located("frame"):
+            body = Frame([body] * document.frame.columns, **document.frame.model_dump(exclude={"columns"}))
     return _restrained(body, document.restraint, length_unit(document.units)) if document.restraint else body
 
 
@@ -300,6 +304,15 @@ def _(body: Section) -> str:
         if holes:
             lines.append(f"holes = [{', '.join(_points(hole) for hole in holes)}]")
     return _lines(*lines)
+
+
+@body_to_toml.register
+def _(body: Frame) -> str:
+    texts = list(dict.fromkeys(map(body_to_toml, body.columns)))
+    if len(texts) > 1:
+        raise InvalidValueError("A body file describes frames with equal columns only.")
+    beam = f"beam_mass = {_number(body.beam_mass)}", f'beam_on = "{body.beam_on}"'
+    return _lines(texts[0].rstrip("\n"), "", "[frame]", f"columns = {len(body.columns)}", *beam)
 
 
 @body_to_toml.register

@@ -206,6 +206,20 @@ class MassPointsTable(StrictTable):
     )  # fmt: skip
 
 
+class FrameTable(StrictTable):
+    """Equal columns under a rigid beam. The other table of the body describes a column."""
+
+    columns: Annotated[int, Field(ge=1, le=100_000)] = Field(description="number of columns")
+    beam_mass: Annotated[float, Field(ge=0.0, le=1e36)] = Field(
+        description="mass of the beam and of everything that moves with the beam [kg]"
+    )
+    beam_on: Literal["corner", "hinge"] = Field(
+        "corner",
+        description="support of the beam: the corner of each column opposite to its foot in contact, or a hinge at the "
+        "middle of its top",
+    )
+
+
 _OF_STIFFNESS = "stiffness in its place"
 
 
@@ -278,6 +292,7 @@ class BodyFile(StrictTable):
     regular_polygon: RegularPolygonTable | None = _body("regular polygon")
     section: SectionTable | None = _body("section of one or more polygons")
     mass_points: MassPointsTable | None = _body("body of mass points")
+    frame: FrameTable | None = key("beam and number of columns; the other table of the body describes a column")
     restraint: list[RestraintTable] | None = key("restraints, one table per restraint")
 
     @classmethod

@@ -10,6 +10,7 @@ import numpy as np
 from rocking import checks, conventions
 from rocking.bodies import Body, Solid
 from rocking.bodies.equilibria import StablePose
+from rocking.bodies.frame import refuse_frame
 from rocking.conventions import FEET, FloatArray, IntArray
 from rocking.decision.assessment.answer import BodyAssessment, ModelMargin, StandingSolid, just_above
 from rocking.decision.code_methods import CODE_METHODS
@@ -292,7 +293,7 @@ def assess(  # noqa: PLR0913 - inputs, assumptions and settings
     >>> assessment.verdict
     'No uplift and no overturning: 0 of 1 motion, 2 restitution cases (1 model, 1 coefficient), both polarities.'
     """
-    checks.of_kind("body", body, (Body, Solid), "a Block, Section, MassPoints or Solid")
+    checks.of_kind("body", refuse_frame(body), (Body, Solid), "a Block, Section, MassPoints or Solid")
     checks.within("margin", margin, 0.0, MAX_MARGIN, open_low=True)
     margin, gravity = float(margin), checks.positive("gravity", gravity, "m/s2")
     if isinstance(restitution, (str, int, float, RestitutionModel)):

@@ -7,6 +7,7 @@ import numpy as np
 
 from rocking import checks, conventions
 from rocking.bodies import Body, Solid
+from rocking.bodies.frame import refuse_frame
 from rocking.conventions import FloatArray
 from rocking.decision.prediction.forecast import Chance, EndsOfRange, OutcomePairs, Prediction
 from rocking.decision.prediction.mechanics import MEASURED, SampledBodies, motion_sequence
@@ -225,7 +226,7 @@ def _mechanics(
     normal_restitution_law: str,
 ) -> SampledBodies:
     """Return the sampled bodies of the engine for a body."""
-    checks.of_kind("body", body, (Body, Solid), "a Block, Section, MassPoints or Solid")
+    checks.of_kind("body", refuse_frame(body), (Body, Solid), "a Block, Section, MassPoints or Solid")
     if not mechanics_for(body, None, study=True).in_plane:
         from rocking.decision.prediction.space import SampledInSpace
 

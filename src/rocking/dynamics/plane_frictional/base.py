@@ -8,6 +8,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies import Body
+from rocking.bodies.frame import refuse_frame
 from rocking.errors import InvalidValueError
 from rocking.outcome import Regime
 
@@ -28,6 +29,7 @@ class PlaneBase:
     @classmethod
     def of_body(cls, body: Body) -> "PlaneBase":
         checks.of_kind("body", body, Body, "a Block, Section or MassPoints")
+        refuse_frame(body)
         left, right = body.side("left"), body.side("right")
         mass = body.mass
         if not body.moment_of_inertia > 0.0:

@@ -8,6 +8,7 @@ import numpy as np
 
 from rocking import checks, conventions
 from rocking.bodies import Body
+from rocking.bodies.frame import refuse_frame
 from rocking.conventions import FloatArray, IntArray
 from rocking.errors import InvalidValueError
 from rocking.portable import dot
@@ -27,6 +28,7 @@ class RigidRocking:
 
     @classmethod
     def of_body(cls, body: Body, bed: ContactBed, gravity: float) -> "RigidRocking":
+        refuse_frame(body)
         moments = body.local_moments
         return cls(moments.mass, moments.polar, moments.y, gravity, bed)
 

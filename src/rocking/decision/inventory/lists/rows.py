@@ -9,6 +9,7 @@ from typing import Any
 
 from rocking.bodies import Block, Body, Restrained, Section, Solid
 from rocking.bodies.formats import read_body
+from rocking.bodies.frame import refuse_frame
 from rocking.decision.inventory.lists.cells import CellMeasure, is_missing
 from rocking.decision.inventory.lists.columns import MEASURED, WORDS, plain, stem_of, words_of
 from rocking.decision.inventory.lists.header import LocatedHeader
@@ -268,6 +269,7 @@ def body_of(name: str, units: Any, find: Callable[[str], Path] | None) -> dict[s
     body = read_body(find(name), units=units)
     if isinstance(body, (Block, Section)):
         body = Solid.from_section(body)
+    refuse_frame(body)
     if isinstance(body, (Body, Restrained)):
         raise InvalidValueError("{file}: mass points define no shape in three dimensions", file=name)
     size = body.box[1] - body.box[0]
