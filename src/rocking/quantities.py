@@ -213,10 +213,16 @@ _RESTRAINTS = (
 )
 _STACK = (
     Quantity("joint", "1", "number of the joint below a body; 1 is the joint on the ground"),
-    Quantity("joint_state", "", "monolithic, rocking, sliding, rocking and sliding, or overturned", label="state"),
+    Quantity(
+        "joint_state", "", "monolithic, rocking, sliding, rocking and sliding, overturned, or slid off", label="state"
+    ),
     Quantity("joint_event", "", "opens, impact, closes, or turning point (peak)", label="event"),
     Quantity("corners_before", "", "corners in contact before the event, lowest joint first", label="before"),
     Quantity("corners_after", "", "corners in contact after the event, lowest joint first", label="after"),
+    Quantity(
+        "interpenetration", "1", "largest interpenetration of bodies, over the semi-diagonal of the smallest body"
+    ),
+    Quantity("energy_created", "J", "sum of the positive works of contact impulses; an error of the time steps"),
     Quantity("joint_height", "m", "height of the joint above the ground", label="height"),
     Quantity("joint_width", "m", "distance of the corners of the joint", label="width"),
     Quantity("opening", "rad", "rotation of the upper body of a joint relative to the lower body"),

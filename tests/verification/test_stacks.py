@@ -4,6 +4,8 @@ The values are those of two routes of independent code (Lagrange's equations by 
 x, z and theta by Gragg-Bulirsch-Stoer); they agree to 1e-13. Case names are those of the source.
 """
 
+import contextlib
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -13,6 +15,7 @@ import pytest
 import rocking as rk
 from rocking.dynamics.stack.chain import Chain
 from rocking.dynamics.stack.contact_choice import corner_rows, under_forces
+from rocking.dynamics.stack.time_stepping import COMPILED
 from rocking.dynamics.stack.trajectory import IMPACT, OPENS, PEAK
 from rocking.errors import GeometryError, InvalidValueError
 
@@ -259,7 +262,7 @@ def test_chattering_joints_close():
 @pytest.mark.verifies("behaviour")
 def test_the_limit_of_sticking_is_stated():
     """With little friction the response states joint, time and ratio; the time is that of the first excess."""
-    options = {"gravity": G, "duration": 0.97}
+    options = {"gravity": G, "duration": 0.97, "engine": "reference"}
     with pytest.warns(rk.errors.PureRockingWarning, match=r"joint 1 slides from .* s: sticking needs friction 0.487"):
         response = rk.simulate(stack((1, 2), (0.6, 2), friction=0.45), rk.pulses.sine(4.0, 0.8), **options)
     assert len(response.doubts()) == 1
@@ -310,3 +313,164 @@ def test_refusals_of_stacks():
         rk.free_rocking(stack((1.0, 2.0)), rotation=0.1, restitution="housner")
     with pytest.raises(InvalidValueError, match="rotation"):
         rk.free_rocking(stack((1.0, 2.0)), rotation=(0.1, 0.2))
+
+
+# Time stepping
+
+fast = pytest.mark.skipif(not COMPILED.available(), reason="the compiled engine of stacks was not built")
+
+
+def stepped(case, step, friction=5.0):
+    """Return the response of a case by time stepping, with friction that does not let the joints slide."""
+    options = {"gravity": G, "duration": case.duration, "engine": "fast", "longest_step": step}
+    body = stack(*case.sizes, friction=friction)
+    if case.motion is None:
+        return rk.free_rocking(body, rotation=case.rotation, **options)
+    return rk.simulate(body, rk.pulses.sine(*case.motion), **options)
+
+
+def differences(case, response):
+    """Return the largest differences of times [s], and of velocities [rad/s], of the impacts of a case."""
+    impacts = [event for event in case.events if event[1] == IMPACT]
+    computed = response.trajectory.events[: len(impacts)]
+    assert [event.joint + 1 for event in computed] == [event[2] for event in impacts]
+    times = [abs(a.time - b[0]) for a, b in zip(computed, impacts, strict=True)]
+    pairs = [(a.before + a.after, b[4] + b[5]) for a, b in zip(computed, impacts, strict=True)]
+    return max(times), max(abs(x - y) for a, b in pairs for x, y in zip(a, b, strict=True))
+
+
+@fast
+@pytest.mark.parametrize("name", CASES)
+@pytest.mark.verifies(
+    "second engine", "the independent values of the events", within="1e-3", control="test_little_friction"
+)
+def test_time_stepping_of_two_blocks(name):
+    """Times and velocities of all impacts agree to 3 digits with a step of 5e-5 sqrt(R/g): the method has order one."""
+    times, velocities = differences(CASES[name], stepped(CASES[name], 5e-5))
+    assert times < 1e-3
+    assert velocities < 1e-3
+
+
+@fast
+@pytest.mark.verifies("negative control")
+def test_little_friction():
+    """Negative control: with friction 0.45, joint 1 of SH1 slides, and the impacts miss the values."""
+    response = stepped(CASES["SH1"], 5e-5, friction=0.45)
+    assert differences(CASES["SH1"], response)[1] > 2e-3
+    assert response.joint_displacement[-1, 0] != 0.0
+
+
+@fast
+@pytest.mark.parametrize("sizes", [((1.0, 4.0),), ((1.0, 2.0), (0.6, 2.0))], ids=["one", "two"])
+@pytest.mark.verifies("order", "the first power of the step", within="0.25")
+def test_order_of_time_stepping(sizes):
+    """The error against the event-driven engine falls with the first power of the step, for one and for two bodies."""
+    pulse, options = rk.pulses.sine(4.0, 0.8), {"gravity": G, "duration": 0.97}
+    exact = rk.simulate(stack(*sizes), pulse, engine="reference", **options).rotation
+    steps = 0.004 / 2.0 ** np.arange(7)
+    errors = [
+        np.abs(rk.simulate(stack(*sizes, friction=5.0), pulse, longest_step=step, **options).rotation - exact).max()
+        for step in steps.tolist()
+    ]
+    order = np.polyfit(np.log(steps), np.log(errors), 1)[0]
+    assert order == pytest.approx(1.0, abs=0.25)
+    assert errors[-1] < 1e-4
+
+
+@fast
+@pytest.mark.verifies("second engine", "the plane engine with Housner's restitution", within="1e-3")
+def test_time_stepping_of_one_block():
+    """One block: peak rotation and first impact of the plane engine; no coefficient of restitution is stated."""
+    block, pulse = rk.Block(width=1.0, height=4.0), rk.pulses.sine(3.0, 0.8)
+    expected = rk.simulate(block, pulse, "housner", duration=4.0)
+    response = rk.simulate(rk.Stack([block], friction=5.0), pulse, duration=4.0, longest_step=1e-4)
+    assert response.peak_rotation == pytest.approx(expected.peak_rotation, abs=1e-4)
+    assert response.trajectory.events[0].time == pytest.approx(expected.impacts["time"][0], abs=1e-6)
+    assert response.trajectory.events[1].time == pytest.approx(expected.impacts["time"][1], abs=1e-3)
+
+
+@fast
+@pytest.mark.verifies("closed form", "sliding under a rectangular pulse", within="2e-4")
+def test_sliding_of_a_block():
+    """A squat block slides under a rectangular pulse: (a - mu g) a T^2 / (2 mu g), and it does not rock."""
+    mu, a, duration = 0.3, 4.0, 0.5
+    response = rk.simulate(stack((2.0, 1.0), friction=mu), rk.pulses.rectangular(a, duration), gravity=G, duration=2.0)
+    exact = -(a - mu * G) * a * duration**2 / (2.0 * mu * G)
+    assert response.joint_displacement[-1, 0] == pytest.approx(exact, abs=2e-4)
+    assert response.outcome is rk.Outcome.SLID
+    assert response.joint_states == ("sliding",)
+    assert response.trajectory.lost[-1] == pytest.approx(response.trajectory.work[-1], rel=1e-9)
+
+
+def drums(count, **options):
+    return rk.Stack([rk.Block(width=1.6, height=1.0) for _ in range(count)], **options)
+
+
+def record(peak, count=4000, step=0.01):
+    """Return a synthetic record of filtered noise with an envelope."""
+    noise = np.convolve(np.random.default_rng(1).normal(size=count), np.hanning(25), "same")
+    values = noise * np.exp(-(((np.arange(count) * step - 12.0) / 8.0) ** 2))
+    return rk.GroundMotion(values / np.abs(values).max() * peak, step)
+
+
+@fast
+@pytest.mark.parametrize(("peak", "friction"), [(2.0, 0.7), (5.0, 0.4), (8.0, 0.7), (8.0, None)])
+@pytest.mark.verifies("invariant", "energy and interpenetration", within="1e-6")
+def test_ten_drums_under_a_record(peak, friction):
+    """Ten drums: no interpenetration beyond 1e-6 of the size, no energy created beyond 1e-6, energy closes."""
+    with pytest.warns(rk.errors.PureRockingWarning) if friction is None else contextlib.nullcontext():
+        response = rk.simulate(drums(10, friction=friction), record(peak), duration=40.0)
+    run = response.trajectory
+    assert run.interpenetration < 1e-6
+    assert run.energy_created < 1e-6 * run.lost[-1]
+    assert response.energy_closure < 1e-9
+    assert (run.unsolved_steps > 0) == (friction is None)  # the paradox of Painleve without a bound on friction
+    assert (response.outcome is rk.Outcome.OVERTURNED) == (peak > 2.0)
+
+
+@fast
+@pytest.mark.verifies("same bits", "repetition in threads", within="")
+def test_same_bits_of_a_stack():
+    """Histories in four threads have the bits of a history alone."""
+    body, motion = drums(5, friction=0.5), record(4.0, 1500)
+
+    def bits(_=None):
+        response = rk.simulate(body, motion)
+        return response.rotation.tobytes() + response.joint_displacement.tobytes()
+
+    with ThreadPoolExecutor(4) as pool:
+        assert set(pool.map(bits, range(4))) == {bits()}
+
+
+@fast
+@pytest.mark.verifies("behaviour")
+def test_a_slippery_joint_is_named():
+    """Of three blocks the joint with little friction slides, the others do not. A long pulse removes the top."""
+    body = stack((2.0, 1.0), (2.0, 1.0), (2.0, 1.0), friction=(0.9, 0.1, 0.9))
+    response = rk.simulate(body, rk.pulses.sine(3.0, 0.5))
+    assert response.joint_states == ("monolithic", "sliding", "monolithic")
+    joints = response.answer()["joints"].records
+    assert joints[1]["residual_joint_displacement"] == response.joint_displacement[-1, 1] != 0.0
+    assert joints[0]["friction_demand"] < 0.9
+    assert joints[1]["friction_demand"] == pytest.approx(0.1, rel=1e-6)
+    removed = rk.simulate(body, rk.pulses.rectangular(3.0, 2.0))
+    assert removed.joint_states[1] in {"overturned", "slid off"}
+    assert removed.outcome is rk.Outcome.OVERTURNED
+
+
+@fast
+@pytest.mark.parametrize("restitution", [0.2, 0.6])
+@pytest.mark.verifies("invariant", "energy", within="1e-6")
+def test_restitution_creates_no_energy(restitution):
+    """With restitution blocks bounce; the lost energy grows, and the impulses create none."""
+    body = stack((1.0, 2.0), (0.6, 2.0), friction=0.6, restitution=restitution)
+    response = rk.simulate(body, rk.pulses.sine(4.0, 0.8), duration=3.0)
+    run = response.trajectory
+    assert run.energy_created < 1e-6 * run.lost[-1]
+    assert np.diff(run.lost).min() > -1e-6 * run.lost[-1]
+    assert (
+        run.impacts
+        > rk.simulate(stack((1.0, 2.0), (0.6, 2.0), friction=0.6), rk.pulses.sine(4.0, 0.8)).trajectory.impacts
+    )
+    with pytest.raises(InvalidValueError, match="reference engine"):
+        rk.simulate(body, rk.pulses.sine(4.0, 0.8), engine="reference")

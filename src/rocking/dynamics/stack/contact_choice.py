@@ -64,19 +64,13 @@ def after_impact(
     rotation: Sequence[float],
     rates: Sequence[float],
     flat: set[int],
-    restitution: Sequence[float],
 ) -> CornerSolution:
-    """Return the velocities after an impact of the joints in `flat` that are open; the other flat joints are closed."""
+    """Return the velocities after a plastic impact of the open joints in `flat`. The other flat joints are closed."""
     rows = corner_rows(chain, sides, rotation, flat)
     velocities = chain.velocities(sides, rotation, rates)
     before = [value for v, rate in zip(velocities, rates, strict=True) for value in (*v, rate)]
     jacobian = _jacobian(chain, sides, rotation, rows)
-    speeds = [_product(row, before) for row in jacobian]
-    offsets = [
-        restitution[row.joint] * min(speed, 0.0) if row.is_one_sided else 0.0
-        for row, speed in zip(rows, speeds, strict=True)
-    ]
-    return _solved_problem(chain, rows, jacobian, before, offsets)  # Eq. 361
+    return _solved_problem(chain, rows, jacobian, before, [0.0] * len(rows))  # Eq. 361
 
 
 def under_forces(

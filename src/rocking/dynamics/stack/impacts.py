@@ -50,7 +50,7 @@ def stack_impact(
     angular_velocity: Sequence[float],
     rotation: float | Sequence[float] = 0.0,
 ) -> StackImpact:
-    """Return the velocities after an impact of one joint of a stack whose joints stick.
+    """Return the velocities after a plastic impact of one joint of a stack whose joints stick.
 
     The velocity after the impact is the projection of the velocity before the impact onto the velocities without
     interpenetration, in the norm of the kinetic energy (docs/theory/stacks.md). The projection is unique.
@@ -95,7 +95,7 @@ def stack_impact(
     rates = values_per_body("angular_velocity", angular_velocity, count)
     angles = values_per_body("rotation", rotation, count)
     flat = {k for k, side in enumerate(corners) if side == 0} | {index}
-    solution = after_impact(chain, corners, angles, rates, flat, stack.restitution)
+    solution = after_impact(chain, corners, angles, rates, flat)
     after = [solution.side_of(k) for k in range(count)]
     if any(side is None for side in after):
         raise InvalidValueError("both corners of a joint leave the contact after this impact")

@@ -22,7 +22,7 @@ from rocking.dynamics.stack.trajectory import CLOSES, IMPACT, OPENS, PEAK, Stack
 from rocking.motions.segments import Segments
 from rocking.outcome import Outcome, Status
 
-STEPS_OF_REFERENCE = 20.0  # longest step over that of time stepping
+STEPS_OF_REFERENCE = 40.0  # longest step over that of time stepping
 _STAGES = [[float(value) for value in row[:k]] for k, row in enumerate(DOP853.A)]
 _NODES, _WEIGHTS = [float(value) for value in DOP853.C], [float(value) for value in DOP853.B]
 _HALVINGS, _HALF_PI = 60, 0.5 * math.pi
@@ -157,7 +157,7 @@ class StackReference:
     def _land(self, joint: int) -> None:
         flat = {k for k, side in enumerate(self.sides) if side == 0} | {joint}
         self._equal_rotation(joint)
-        solution = after_impact(self.chain, self.sides, self._rotation, self._rates, flat, self.stack.restitution)
+        solution = after_impact(self.chain, self.sides, self._rotation, self._rates, flat)
         sides, rates = list(self.sides), [solution.motion[3 * k + 2] for k in range(self.count)]
         for k in range(self.count):
             side = solution.side_of(k)
@@ -177,7 +177,7 @@ class StackReference:
         self._equal_rotation(joint)
         sides = tuple(0 if k == joint else side for k, side in enumerate(self.sides))
         flat = {k for k, side in enumerate(sides) if side == 0}
-        solution = after_impact(self.chain, self.sides, self._rotation, self._rates, flat, [0.0] * self.count)
+        solution = after_impact(self.chain, self.sides, self._rotation, self._rates, flat)
         rates = [solution.motion[3 * k + 2] for k in range(self.count)]
         for k in flat:  # the bodies of a closed joint have one angular velocity
             rates[k] = rates[k - 1] if k else 0.0

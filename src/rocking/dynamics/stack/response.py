@@ -105,14 +105,19 @@ class StackResponse(ResponseBase):
         scale = max(float(np.max(np.abs(values))) for values in (stored, run.work, run.lost))
         return float(np.max(np.abs(stored - stored[0] - run.work + run.lost))) / max(scale, 1e-300)
 
+    @property
+    def is_slid_off(self) -> bool:
+        """True if a body has left the face of the body below by sliding."""
+        return self.trajectory.fallen >= 0 and float(np.max(np.abs(self.rotation[-1]))) < 0.49 * math.pi
+
     @cached_property
     def joint_states(self) -> tuple[str, ...]:
-        """State of every joint: monolithic, rocking, sliding, rocking and sliding, or overturned."""
-        run, states = self.trajectory, []
+        """State of every joint: monolithic, rocking, sliding, rocking and sliding, overturned, or slid off."""
+        run, states, end = self.trajectory, [], "slid off" if self.is_slid_off else "overturned"
         for index, joint in enumerate(self.body.joints):
             rocks, slides = run.peak_opening[index] > _OPEN, run.peak_slip[index] > _SLID * joint.width
             state = "rocking and sliding" if rocks and slides else "rocking" if rocks else "sliding"
-            states.append("overturned" if index == run.fallen else state if rocks or slides else "monolithic")
+            states.append(end if index == run.fallen else state if rocks or slides else "monolithic")
         return tuple(states)
 
     @cached_property
@@ -146,7 +151,7 @@ class StackResponse(ResponseBase):
         })  # fmt: skip
 
     def doubts(self) -> list[str]:
-        """Return the reasons against joints that stick and keep their contact.
+        """Return the reasons against the assumptions of the engine: joints that stick and keep their contact.
 
         Returns
         -------
@@ -155,8 +160,15 @@ class StackResponse(ResponseBase):
         """
         run = self.trajectory
         sentences: list[str] = []
+        if run.unsolved_steps:
+            sentences.append(Message(
+                "{count} step has no contact force with the stated friction (Painleve's paradox); this step has a "
+                "friction of at most 1", {"count": run.unsolved_steps},
+                "{count} steps have no contact force with the stated friction (Painleve's paradox); these steps have a "
+                "friction of at most 1",
+            ))  # fmt: skip
         if not run.assumes_sticking:
-            return []
+            return sentences
         for index, time in enumerate(run.slip_time.tolist()):
             if math.isfinite(time):
                 facts = {
@@ -186,6 +198,7 @@ class StackResponse(ResponseBase):
         return super().answer() | {
             "body": self.body.answer(self.settings.gravity), "motion": motion_answer(self.motion, self.scale),
             "energy_closure": self.energy_closure, "energy_lost": float(self.trajectory.lost[-1]),
+            "interpenetration": self.trajectory.interpenetration, "energy_created": self.trajectory.energy_created,
             "warnings": self.doubts(),
         }  # fmt: skip
 
@@ -199,10 +212,10 @@ class StackResponse(ResponseBase):
         if run.outcome in {Outcome.NO_UPLIFT, Outcome.FAILED, Outcome.SLID}:
             return str(run.outcome.value)
         if run.outcome is Outcome.OVERTURNED:
-            return Message(
-                "overturned at joint {joint}, quarter turn at {time:.4g} s",
-                {"joint": run.fallen + 1, "time": run.overturning_time},
-            )
+            facts: dict[str, Any] = {"joint": run.fallen + 1, "time": run.overturning_time}
+            if self.is_slid_off:
+                return Message("overturned: the bodies above joint {joint} slid off at {time:.4g} s", facts)
+            return Message("overturned at joint {joint}, quarter turn at {time:.4g} s", facts)
         joint = int(np.argmax(run.peak_opening))
         facts = {"opening": math.degrees(run.peak_opening[joint]), "joint": joint + 1}
         if run.outcome is Outcome.ROCKED_AND_SLID:

@@ -15,7 +15,7 @@ class StackSettings(Settings):
         See `Settings`; the same for all mechanics.
     longest_step : float
         Longest step over sqrt(R / g) of the smallest body, with R its semi-diagonal [-]. The reference engine uses
-        steps up to 20 times longer.
+        steps up to 40 times longer.
     rest_speed : float
         Largest speed of opening after an impact, over p alpha of the bodies above the joint, for which the joint closes
         [-].
@@ -34,6 +34,6 @@ class StackSettings(Settings):
     0.001
     """
 
-    longest_step: float = ranged(0.001, 1e-6, 0.01)
+    longest_step: float = ranged(0.0005, 1e-6, 0.01)
     rest_speed: float = ranged(0.001, 0.0, 0.1)
     tolerance: float = ranged(1e-9, 1e-14, 1e-3)
