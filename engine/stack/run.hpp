@@ -95,7 +95,7 @@ class Run {
         }
         account(time, h, kick, ground, before);
         for (std::size_t k = 1; k <= n; ++k) {
-            at[k].at = at[k].at + Vector{h * after_[k].v.x, h * after_[k].v.z};  // Eq. 364
+            at[k].at = at[k].at + Vector{h * after_[k].v.x, h * after_[k].v.z};  // Eq. 378
             at[k].angle += h * after_[k].spin;
             if (!(std::fabs(at[k].angle) < 1e6)) status = kNotFinite;
             if (std::fabs(at[k].angle) >= kHalfPi && fallen < 0) fall(static_cast<std::int64_t>(k) - 1, time + h);
@@ -183,7 +183,7 @@ class Run {
                 const Measure end = measure(corners_[k][i], upper, next_[k + 1], lower, next_[k]);
                 const Row& normal = rows_[k][i][0];
                 const double change = speed(normal, free_[k + 1], free_[k]) - speed(normal, guess_[k + 1], guess_[k]);
-                joints_[k].constant[i] = end.gap / h + change;  // Eq. 365
+                joints_[k].constant[i] = end.gap / h + change;  // Eq. 379
                 const double approach = speed(normal, before[k + 1], before[k]);
                 struck_[k][i] = approach < -laws[k].slow * laws[k].width && joints_[k].constant[i] < 0.0;
                 if (struck_[k][i] && laws[k].restitution > 0.0)

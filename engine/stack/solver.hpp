@@ -156,7 +156,7 @@ class Solver {
                 j.slides = 0;
                 continue;
             }
-            const double bound = j.friction * (j.impulse[0] + j.impulse[1]);  // Eq. 366
+            const double bound = j.friction * (j.impulse[0] + j.impulse[1]);  // Eq. 380
             if (j.slides == 0) {
                 if (std::fabs(j.impulse[2]) > bound + low && bound >= 0.0) j.slides = j.impulse[2] > 0.0 ? 1 : -1, changed = true;
             } else if (j.slides * velocity(joints, k, 2) > slow) {
