@@ -201,6 +201,7 @@ _RESTRAINTS = (
     Quantity("residual_slack", "m", "elongation from the upright body before a slack restraint has a force"),
     Quantity("dissipated_energy", "J", "energy dissipated by the restraint", label="dissipated"),
     Quantity("rupture_loss", "J", "elastic energy lost at the rupture of the restraint"),
+    Quantity("floor_slope", "rad", "slope of the floor, positive if it rises to the right"),
     Quantity("lost_contact_time", "s", "time from which the contact force is tensile", label="contact lost at"),
     Quantity("residual_rotation", "rad", "rotation at the end of the response"),
     Quantity("uplift_height", "m", "largest height of the lifted foot above the ground", label="uplift of the foot"),

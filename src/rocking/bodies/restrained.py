@@ -15,20 +15,24 @@ from rocking.messages import Message
 
 @dataclass(frozen=True)
 class Restrained:
-    """A plane body with tendons, dampers, fuses, springs and walls.
+    """A plane body with tendons, dampers, fuses, springs and walls, optionally on a sloping floor.
 
     Parameters
     ----------
     body : Body
         The body: Block, Section or MassPoints.
     restraints : sequence of Restraint
-        Tendon, ViscousDamper, FrictionDamper, Fuse, Spring and Wall, in any number. Restraints without a name receive a
-        name.
+        Tendon, ViscousDamper, FrictionDamper, Fuse, Spring and Wall, in any number, also none. Restraints without a
+        name receive a name.
+    floor_slope : float
+        Slope of the floor, positive if the floor rises to the right [rad]. The coordinates of body and restraints, and
+        the rotations, are relative to the floor.
 
     Raises
     ------
     InvalidValueError
-        If the body is not a plane body, two restraints have the same name, or the law of a wall is not for this body.
+        If the body is not a plane body, two restraints have the same name, the law of a wall is not for this body, or
+        the upright body is not stable on the slope.
 
     Notes
     -----
@@ -47,13 +51,22 @@ class Restrained:
 
     body: Body
     restraints: tuple[Restraint, ...]
+    floor_slope: float = 0.0
 
-    def __init__(self, body: Body, restraints: Sequence[Restraint] | Restraint) -> None:
+    def __init__(
+        self, body: Body, restraints: Sequence[Restraint] | Restraint = (), *, floor_slope: float = 0.0
+    ) -> None:
         checks.of_kind("body", body, Body, "a Block, Section or MassPoints")
         listed = [restraints] if isinstance(restraints, Restraint) else list(restraints)
         for restraint in listed:
             allowed = "Tendon, ViscousDamper, FrictionDamper, Fuse, Spring or Wall"
             checks.of_kind("restraints", restraint, Restraint, allowed)
+        right, left = (body.side(foot).slenderness_angle for foot in ("right", "left"))
+        slope = checks.within(
+            "floor_slope", floor_slope, -right, left, unit="rad", open_low=True, open_high=True,
+            hint="the upright body is not stable on a steeper floor",
+        )  # fmt: skip
+        object.__setattr__(self, "floor_slope", slope)
         object.__setattr__(self, "body", body)
         object.__setattr__(self, "restraints", tuple(_named([restraint.placed_on(body) for restraint in listed])))
 
@@ -116,6 +129,7 @@ class Restrained:
         """
         return self.body.answer(gravity) | {
             "assumed": self.assumed,
+            "floor_slope": self.floor_slope,
             "restraint_laws": [facts_of(restraint) for restraint in self.restraints],
         }
 

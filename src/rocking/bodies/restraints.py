@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 from rocking import checks
 from rocking.bodies.body import Body
+from rocking.bodies.frame import Frame
 from rocking.conventions import FEET
 from rocking.errors import InvalidValueError
 
@@ -544,11 +545,18 @@ class Wall(Restraint):
         Raises
         ------
         InvalidValueError
-            If the law is Sorrentino's and the body is not a homogeneous rectangle, or the law is plastic and floor and
-            wall do not stop this body without tensile forces.
+            If a rigid wall is at a frame, the law is Sorrentino's and the body is not a homogeneous rectangle, or the
+            law is plastic and floor and wall do not stop this body without tensile forces.
         """
         if self.law == "compliant":
             return None
+        if isinstance(body, Frame):
+            raise InvalidValueError(
+                "the law of a rigid wall is not for a frame",
+                parameter="law",
+                value=self.law,
+                hint="use a compliant wall",
+            )
         left, right = (body.side(foot) for foot in FEET)
         centre, inertia = left.centre_height, left.moment_of_inertia / left.mass - left.semi_diagonal**2
         height = body.local_box[3] if self.height is None else self.height

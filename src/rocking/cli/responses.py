@@ -26,6 +26,7 @@ from rocking.spec.response import ResponseProblem
 _PEAKS = (
     "peak_rotation", "peak_ratio", "peak_tilt", "sliding_distance", "residual_displacement", "friction_usage",
     "error_estimate", "residual_rotation", "uplift_height", "largest_base_shear", "largest_overturning_moment",
+    "lost_contact_time",
 )  # fmt: skip
 _RESTRAINTS = (
     "restraint", "largest_force", "smallest_force", "largest_elongation", "yield_count", "is_broken", "residual_force",
@@ -131,6 +132,8 @@ class ResponseAnswer:
         answer, display = self.answer(), self.display
         page.line(f"{body_line(self.problem.body, answer['body'], display)}; {self._moved(answer)}")
         page.line(f"Restitution: {self._restitution(answer)}")
+        if slope := answer["body"].values.get("floor_slope"):
+            page.line(f"Floor: slope {display.text('floor_slope', slope)}")
         if "friction" in answer and not self.problem.mechanics.is_compared:
             page.line(f"Contact: {', '.join(self._contact(answer))}")
         page.line()

@@ -14,7 +14,7 @@ from rocking.checks import length_unit
 from rocking.errors import InvalidValueError
 from rocking.spec.reading import InputFiles, tables_in
 
-_OUTSIDE = ("units", "name", "note", "frame", "restraint")
+_OUTSIDE = ("units", "name", "note", "frame", "restraint", "floor_slope")
 
 
 def body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body:
@@ -28,6 +28,8 @@ def body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body:
 def without_restraints(body: Body | Restrained | Solid) -> Body | Solid:
     """Return a body, or raise an error if it has restraints."""
     if isinstance(body, Restrained):
+        if not body.restraints:
+            raise InvalidValueError("This analysis does not support a sloping floor. Remove floor_slope.")
         raise InvalidValueError("This analysis does not support restraints. Remove [[restraint]].")
     return body
 
@@ -77,7 +79,9 @@ def body_for_motion(table: dict[str, Any], inputs: InputFiles | None, *, in_spac
 
 
 _WITH_FILE = ("units", "density", "up", "repair", "surface", "wall", "inner_parts", "base_tolerance", *KNOWN)
-_OF_ANGLE = (*_OUTSIDE, "slenderness_angle", "semi_diagonal", "depth", "density", "mass", "moment_of_inertia")
+_OF_ANGLE = (
+    "units", "name", "note", "slenderness_angle", "semi_diagonal", "depth", "density", "mass", "moment_of_inertia",
+)  # fmt: skip
 
 
 def _body_in_file(table: dict[str, Any], inputs: InputFiles | None) -> Body | Restrained | Solid:

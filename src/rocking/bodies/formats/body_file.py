@@ -21,7 +21,7 @@ from rocking.bodies.frame import Frame
 from rocking.bodies.mass_points import MassPoints
 from rocking.bodies.region import Region
 from rocking.bodies.restrained import Restrained
-from rocking.bodies.restraints import KINDS
+from rocking.bodies.restraints import KINDS, Restraint
 from rocking.bodies.section import Section
 from rocking.checks import length_unit
 from rocking.conventions import Assumed, FloatArray
@@ -82,7 +82,10 @@ def body_from_tables(tables: dict[str, Any], folder: str | Path | None = None) -
     if document.frame:
         with located("frame"):
             body = Frame([body] * document.frame.columns, **document.frame.model_dump(exclude={"columns"}))
-    return _restrained(body, document.restraint, length_unit(document.units)) if document.restraint else body
+    if not document.restraint and not document.floor_slope:
+        return body
+    restraints = _restraints(document.restraint or [], length_unit(document.units))
+    return Restrained(body, restraints, floor_slope=document.floor_slope or 0.0)
 
 
 def _without_restraints(document: "schema.BodyFile", folder: str | Path | None) -> Body:
@@ -96,10 +99,10 @@ def _without_restraints(document: "schema.BodyFile", folder: str | Path | None) 
     return _shape(document, scale)
 
 
-def _restrained(body: Body, tables: "list[schema.RestraintTable]", scale: float) -> Restrained:
+def _restraints(tables: "list[schema.RestraintTable]", scale: float) -> list[Restraint]:
     from rocking.bodies.formats.schema import LENGTHS_OF_RESTRAINTS
 
-    restraints = []
+    restraints: list[Restraint] = []
     for i, table in enumerate(tables):
         values = table.model_dump(exclude={"kind"}, exclude_none=True)
         kind = KINDS[table.kind]
@@ -114,7 +117,7 @@ def _restrained(body: Body, tables: "list[schema.RestraintTable]", scale: float)
                 length = values[name]
                 values[name] = tuple(v * scale for v in length) if isinstance(length, list) else length * scale
             restraints.append(kind(**values))
-    return Restrained(body, restraints)
+    return restraints
 
 
 def parsed_toml(text: Any) -> dict[str, Any]:
@@ -318,6 +321,8 @@ def _(body: Frame) -> str:
 @body_to_toml.register
 def _(body: Restrained) -> str:
     lines = [body_to_toml(body.body).rstrip("\n")]
+    if body.floor_slope:
+        lines.insert(0, f"floor_slope = {_number(body.floor_slope)}")
     for restraint in body.restraints:
         stated = {"kind": restraint.kind, "name": restraint.name, **restraint.constants}
         if restraint.x is not None:

@@ -294,6 +294,10 @@ class BodyFile(StrictTable):
     mass_points: MassPointsTable | None = _body("body of mass points")
     frame: FrameTable | None = key("beam and number of columns; the other table of the body describes a column")
     restraint: list[RestraintTable] | None = key("restraints, one table per restraint")
+    floor_slope: float | None = key(
+        "slope of the floor, positive if the floor rises to the right [rad]", usual="0",
+        allowed="any slope with a stable upright body",
+    )  # fmt: skip
 
     @classmethod
     def _unknown(cls, key: str) -> InvalidValueError:

@@ -1,7 +1,8 @@
 """Restraints during one history: laws, levers about both feet, extremes, events and energy."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -9,6 +10,7 @@ from numpy.typing import ArrayLike
 from rocking.bodies.restrained import Restrained
 from rocking.bodies.restraints import Wall
 from rocking.conventions import FloatArray
+from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.restrained.laws import ForceLaw, law_of
 from rocking.dynamics.restrained.levers import Lever
 from rocking.errors import InvalidValueError
@@ -121,6 +123,18 @@ def devices_of(body: Restrained, *, linear: bool) -> list[Device]:
         levers = {side: Lever.of(item, body.body, side, linear=linear) for side in (1, -1)}
         devices.append(Device(law, levers, start_energy=law.stored(0.0)))
     return devices
+
+
+def parameters_of(
+    body: Restrained, restitution: Any, gravity: float, *, may_be_none: bool = False
+) -> RockingParameters:
+    """Return the parameters of the equation of motion of a body on its floor."""
+    parameters = RockingParameters.of_body(body.body, restitution, gravity, may_be_none=may_be_none)
+    right, left = (  # Eq. 368: with the slope, gravity and motion keep their directions
+        replace(half, slenderness_angle=half.slenderness_angle + sign * body.floor_slope)
+        for sign, half in ((1, parameters.right), (-1, parameters.left))
+    )
+    return replace(parameters, right=right, left=left)
 
 
 def check_path(body: Restrained, *directions: float) -> None:

@@ -19,7 +19,7 @@ from rocking.dynamics.restrained.reference import RestrainedTrajectory
 class RestrainedForces:
     """Forces of the ground and of the foundation, and energy, at the samples."""
 
-    horizontal_force: FloatArray  # force of the ground on the body alone, to the right and upwards [N]
+    horizontal_force: FloatArray  # force of the ground on the body alone, parallel to the floor and normal [N]
     vertical_force: FloatArray
     base_shear: FloatArray  # force of body and restraints on the foundation [N]
     overturning_moment: FloatArray  # moment on the foundation about the middle of the base, clockwise [N m]
@@ -71,10 +71,14 @@ class RestrainedForces:
         acceleration = equations.angular_acceleration(rotation, side, alpha, p, push, weight, linear=linear)
         acceleration = np.where(moving != 0.0, acceleration - (force * arms).sum(axis=1) / inertia, 0.0)
         acceleration = np.where((velocity == 0.0) & (rotation != 0.0) & (time > 0.0), 0.0, acceleration)
+        sine, cosine = math.sin(body.floor_slope), math.cos(body.floor_slope)
+        along = cosine * horizontal + sine * (gravity + vertical)  # parallel to the floor, and normal
+        across = cosine * (gravity + vertical) - sine * horizontal
+        from_normal = alpha - side * body.floor_slope
         total_x, total_z = equations.reactions(
-            rotation, velocity, acceleration, side, alpha, radius, horizontal, gravity + vertical
+            rotation, velocity, acceleration, side, from_normal, radius, along, across
         )
-        psi = alpha - side * rotation
+        psi = from_normal - side * rotation
         left, right = body.body.feet
         pivot = np.where(side > 0, right, left) - 0.5 * (left + right)
         x, z = pivot - side * radius * np.sin(psi), radius * np.cos(psi)

@@ -10,9 +10,9 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.combined import dataset_of, label_of, plane_inputs
 from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.mechanics_base import Combinations
-from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane_frictional.base import Start, rocking_start
 from rocking.dynamics.response import start_within
+from rocking.dynamics.restrained.devices import parameters_of
 from rocking.dynamics.restrained.engines import RESTRAINT_RESULTS, RESULTS, RestrainedHistory, run_rows
 from rocking.dynamics.restrained.settings import RestrainedSettings
 from rocking.dynamics.settings import thread_count
@@ -39,9 +39,7 @@ def many_with_restraints(cases: Combinations, settings: RestrainedSettings) -> "
         )  # fmt: skip
     if cases.duration is not None:
         checks.positive("duration", cases.duration, "s")
-    table: Any = [
-        [RockingParameters.of_body(body.body, item, settings.gravity) for item in restitutions] for body in bodies
-    ]
+    table: Any = [[parameters_of(body, item, settings.gravity) for item in restitutions] for body in bodies]
     states = [rocking_start(item) for item in starts or [Start()]]
     for row in table:
         for state in states:

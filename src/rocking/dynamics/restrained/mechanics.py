@@ -60,7 +60,9 @@ class RestrainedRocking(PlaneMechanics):
     def parameters(self, body: Any, restitution: Any, settings: Any) -> RockingParameters:
         if body is not settings.body and settings != replace(settings, body=body):
             raise InvalidValueError("a study accepts one body with restraints, got several")
-        return RockingParameters.of_body(body.body, restitution, settings.gravity)
+        from rocking.dynamics.restrained.devices import parameters_of
+
+        return parameters_of(body, restitution, settings.gravity)
 
     @property
     def study_columns(self) -> Mapping[str, Any]:

@@ -160,7 +160,7 @@ def pushover(
         if not angle and (k == 0 or sides[k - 1] != side):
             _lift(devices, side)
         half = body.side("right" if side > 0 else "left", gravity)
-        to_top = side * half.slenderness_angle - angle
+        to_top = side * half.slenderness_angle + restrained.floor_slope - angle
         sine, cosine = (to_top, 1.0) if linear else (math.sin(to_top), math.cos(to_top))
         elongation[k], force[k] = [device.elongation for device in devices], [device.force() for device in devices]
         work[k] = [device.work for device in devices]

@@ -16,6 +16,7 @@ from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane.equations import EventKind
 from rocking.dynamics.response import IMPACT, is_lossless, start_within
 from rocking.dynamics.response_base import ResponseBase, followed, ground_at_rest, max_duration, motion_provenance
+from rocking.dynamics.restrained.devices import parameters_of
 from rocking.dynamics.restrained.engines import RESTRAINT_RESULTS, run
 from rocking.dynamics.restrained.forces import RestrainedForces
 from rocking.dynamics.restrained.reference import RestrainedTrajectory
@@ -404,7 +405,7 @@ def response_with_restraints(  # noqa: PLR0913 - the arguments of `simulate`
     """Return the response of a plane body with restraints. The durations are those without restraints."""
     scale = checks.within("scale", scale, -1e6, 1e6)
     plausibility.warn(plausibility.of_scaled([motion], scale))
-    parameters = RockingParameters.of_body(body.body, restitution, settings.gravity)
+    parameters = parameters_of(body, restitution, settings.gravity)
     frequencies = parameters.right.frequency_parameter, parameters.left.frequency_parameter
     slow, quick = min(frequencies), max(frequencies)
     state = start_within(parameters, *start)

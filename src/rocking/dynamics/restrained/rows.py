@@ -10,6 +10,7 @@ from rocking.conventions import FEET, FloatArray
 from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane.fast_engine import RESULTS
+from rocking.dynamics.restrained.devices import parameters_of
 from rocking.dynamics.restrained.engines import FAST, RestrainedHistory, run_rows
 from rocking.dynamics.restrained.many import AFTER
 from rocking.dynamics.restrained.pushover import pushover
@@ -44,7 +45,7 @@ class RowsWithRestraints:
                 limit=MOST_RESTRAINTS, count=len(settings.body.restraints),
             )  # fmt: skip
         self.motions, self.settings, self.engine = motions, settings, engine
-        self.parameters = RockingParameters.of_body(settings.body.body, None, settings.gravity, may_be_none=True)
+        self.parameters = parameters_of(settings.body, None, settings.gravity, may_be_none=True)
 
     def run(self, piece: Rows, threads: int) -> tuple[dict[str, np.ndarray], dict[str, int]]:
         """Return the results of a piece by name, and the number of rows of the compiled engine."""
