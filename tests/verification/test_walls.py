@@ -308,7 +308,7 @@ def test_rigid_wall_and_floor_stop_the_body():
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-@pytest.mark.verifies("closed form", "Sorrentino et al. (2008)", within="1e-11")
+@pytest.mark.verifies("closed form", "Sorrentino et al. (2008)", within="1e-12")
 def test_sorrentino(engine):
     """Speeds after the first three returns of a block of slenderness 4; the answer states the conditions of the law."""
     body = at_wall(rk.Block(width=1.0, height=4.0, mass=2000.0), law="sorrentino", stiffness=None)
@@ -366,7 +366,7 @@ def test_doors(tmp_path):
         rk.fragility(body, [record()], restitution="housner")
 
 
-@pytest.mark.verifies("closed form", "k d z cos theta", within="1e-14")
+@pytest.mark.verifies("closed form", "k d z cos theta", within="1e-9")
 def test_pushover_into_a_wall():
     """The moment of a compliant wall in a slow rotation is k d z cos theta beyond the gap."""
     theta = -np.linspace(0.0, 0.05, 11)
