@@ -223,6 +223,7 @@ _STACK = (
     Quantity(
         "interpenetration", "1", "largest interpenetration of bodies, over the semi-diagonal of the smallest body"
     ),
+    Quantity("lost_in_joints", "J", "energy lost in impacts and friction of the joints since the start"),
     Quantity("energy_created", "J", "sum of the positive works of contact impulses; an error of the time steps"),
     Quantity("joint_height", "m", "height of the joint above the ground", label="height"),
     Quantity("joint_width", "m", "distance of the corners of the joint", label="width"),

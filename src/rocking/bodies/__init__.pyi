@@ -6,7 +6,6 @@ from .body import Side as Side
 from .frame import Frame as Frame
 from .mass_points import MassPoints as MassPoints
 from .region import Region as Region
-from .restrained import PLANE_BODIES as PLANE_BODIES
 from .restrained import Restrained as Restrained
 from .restraints import FrictionDamper as FrictionDamper
 from .restraints import Fuse as Fuse
@@ -18,5 +17,6 @@ from .restraints import Wall as Wall
 from .section import Section as Section
 from .solid import Part as Part
 from .solid import Solid as Solid
+from .stack import PLANE_BODIES as PLANE_BODIES
 from .stack import Joint as Joint
 from .stack import Stack as Stack

@@ -144,10 +144,6 @@ def without_walls(body: Any) -> None:
         )  # fmt: skip
 
 
-PLANE_BODIES = (Body, Restrained)
-"""Classes of plane bodies, without and with restraints."""
-
-
 def facts_of(restraint: Restraint) -> dict[str, Any]:
     """Return name, law, source, domain and constants of a restraint."""
     return {

@@ -12,6 +12,8 @@ from rocking import checks, conventions
 from rocking.answers import Answer
 from rocking.bodies.block import Block
 from rocking.bodies.body import Body, Side
+from rocking.bodies.mass_points import MassPoints
+from rocking.bodies.restrained import Restrained
 from rocking.bodies.section import Section
 from rocking.conventions import Foot
 from rocking.errors import GeometryError, InvalidValueError
@@ -106,7 +108,7 @@ class Stack:
     ) -> None:
         listed = tuple([bodies] if isinstance(bodies, Body) else bodies)
         for body in listed:
-            checks.of_kind("bodies", body, Body, "a Block, Section or MassPoints")
+            checks.of_kind("bodies", body, (Block, Section, MassPoints), "a Block, Section or MassPoints")
         count = checks.whole("number of bodies", len(listed), 1, MOST_BODIES)
         object.__setattr__(self, "bodies", listed)
         object.__setattr__(self, "friction", _per_joint("friction", friction, count, 1e6))
@@ -252,6 +254,10 @@ class Stack:
                         "joint {joint} does not support the bodies above: their centre of mass is not between the "
                         "corners of the joint", joint=index + 1,
                     )  # fmt: skip
+
+
+PLANE_BODIES = (Body, Restrained, Stack)
+"""Classes of plane bodies: alone, with restraints, and on each other."""
 
 
 def top_edge(body: Body) -> tuple[float, float]:

@@ -32,9 +32,13 @@ _RESTRAINTS = (
     "restraint", "largest_force", "smallest_force", "largest_elongation", "yield_count", "is_broken", "residual_force",
     "dissipated_energy",
 )  # fmt: skip
+_JOINTS = (
+    "joint", "joint_state", "peak_opening", "peak_joint_displacement", "residual_joint_displacement", "friction_demand",
+    "impacts",
+)  # fmt: skip
 _DETAILS = (
     "gravity", "friction_of_motion", "friction_of_impacts", "least_force", "energy_lost", "lost_in_friction",
-    "energy_closure", "engine", "growth_rate", "growth_time", "relative_change",
+    "lost_in_joints", "energy_closure", "engine", "growth_rate", "growth_time", "relative_change",
 )  # fmt: skip
 _OF_STANDING = {"peak_rotation", "peak_ratio", "peak_tilt"}
 _TABLES = {
@@ -47,6 +51,11 @@ _TABLES = {
             "time", "feet", "velocity_before", "velocity_after", "coefficient", "foot", "energy_before",
             "energy_after", "impulse", "contact", "vertices", "energy_lost", "slips",
         ),
+    ),
+    "joint_events": (
+        "Events of joints",
+        ("time", "joint", "joint_event", "corners_before", "corners_after", "opening", "velocity_before",
+         "velocity_after"),
     ),
     "restraint_events": (
         "Events of restraints",
@@ -70,7 +79,9 @@ def answer_of(
     if response.outcome is Outcome.FAILED:
         raise RockingError("there is no response: {reason}", reason=response.status.value)
     models = dict(list(problem.restitutions.items())[1:])
-    if not problem.mechanics.is_compared:
+    if not problem.mechanics.has_restitution:
+        models = {}
+    elif not problem.mechanics.is_compared:
         is_default = next(iter(problem.restitutions)) == DEFAULT_RESTITUTION
         models = {restitution_label(name, problem.body): name for name in COMPARED_RESTITUTIONS if is_default}
     elif not listed and not is_frame(problem.body):
@@ -123,7 +134,8 @@ class ResponseAnswer:
         more["other_models"] = {
             name: {"error": response} if isinstance(response, str) else _facts(response) for name, response in others
         }
-        more["headline"] = headline(answer["restitution"], is_stated=self.is_stated)
+        if problem.mechanics.has_restitution:
+            more["headline"] = headline(answer["restitution"], is_stated=self.is_stated)
         return answer | more
 
     def show(self, page: Page) -> None:
@@ -131,7 +143,8 @@ class ResponseAnswer:
 
         answer, display = self.answer(), self.display
         page.line(f"{body_line(self.problem.body, answer['body'], display)}; {self._moved(answer)}")
-        page.line(f"Restitution: {self._restitution(answer)}")
+        kind = "Restitution" if self.problem.mechanics.has_restitution else "Normal restitution of the joints"
+        page.line(f"{kind}: {self._restitution(answer)}")
         if slope := answer["body"].values.get("floor_slope"):
             page.line(f"Floor: slope {display.text('floor_slope', slope)}")
         if "friction" in answer and not self.problem.mechanics.is_compared:
@@ -148,12 +161,15 @@ class ResponseAnswer:
         if "restraints" in answer:
             page.line("\nRestraints", "bold")
             page.rows(answer["restraints"], _RESTRAINTS, display)
+        if "joints" in answer:
+            page.line("\nJoints", "bold")
+            page.rows(answer["joints"], _JOINTS, display)
         page.warn(doubt.replace(_IN_PYTHON, "--friction") for doubt in answer.values.get("warnings", ()))
         if self.problem.mechanics.is_compared and self.others:
             self._compare(page)
         else:
             self._compare_outcomes(page, answer)
-        page.line(answer["headline"])
+        page.line(answer.values.get("headline", ""))
         self._show_tables(page, answer)
         page.line()
         for assumed in answer["body"]["assumed"]:

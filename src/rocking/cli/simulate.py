@@ -200,6 +200,10 @@ def _several(arguments: Arguments, texts: list[str], display: Display, *, quiet:
         subject = any_body_of(arguments.body_table(body), files)
         motions = motions_of(named, files, paired=not isinstance(subject, PLANE_BODIES))
         problem = problem_of(checked(ResponseTables, tables), subject, motions[0], scale=1.0, inputs=files)
+        if not problem.mechanics.has_restitution:
+            raise UsageError(
+                "Several records do not support {subject}. Give one record", subject=problem.mechanics.subject
+            )
         listed = [motions[k] for k in range(len(motions))]
         label = next(iter(problem.restitutions))
         others = COMPARED_RESTITUTIONS if label == DEFAULT_RESTITUTION else ()

@@ -93,6 +93,7 @@ class Mechanics(ABC):
     name: ClassVar[str]  # identifier
     in_plane: ClassVar[bool] = True  # True if the ground motion has one horizontal component only
     slides: ClassVar[bool] = False  # True if bodies slide, hop and fly; the restitution may then be None
+    has_restitution: ClassVar[bool] = True  # False if the body itself states its restitution
     is_compared: ClassVar[bool] = False  # True if studies compare restitutions, linear equations and engines
     title: ClassVar[str]  # title of the mechanics, a noun
     subject: ClassVar[str]  # description of its bodies in messages

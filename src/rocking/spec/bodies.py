@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from rocking import checks
-from rocking.bodies import Block, Body, Restrained, Section
+from rocking.bodies import PLANE_BODIES, Block, Body, Restrained, Section, Stack
 from rocking.bodies.formats import read_body
 from rocking.bodies.formats.body_file import body_from_tables
 from rocking.bodies.formats.reader import KNOWN
@@ -25,8 +25,10 @@ def body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body:
     return body
 
 
-def without_restraints(body: Body | Restrained | Solid) -> Body | Solid:
-    """Return a body, or raise an error if it has restraints."""
+def without_restraints(body: Body | Restrained | Stack | Solid) -> Body | Solid:
+    """Return a body, or raise an error if it has restraints or is a stack."""
+    if isinstance(body, Stack):
+        raise InvalidValueError("This analysis does not support stacks. `rocking simulate` supports stacks.")
     if isinstance(body, Restrained):
         if not body.restraints:
             raise InvalidValueError("This analysis does not support a sloping floor. Remove floor_slope.")
@@ -34,7 +36,7 @@ def without_restraints(body: Body | Restrained | Solid) -> Body | Solid:
     return body
 
 
-def any_body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body | Restrained | Solid:
+def any_body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body | Restrained | Stack | Solid:
     """Return the 2D or 3D body of a table."""
     if "file" in table:
         return _body_in_file(table, inputs)
@@ -60,10 +62,17 @@ def name_of(table: dict[str, Any], folder: Path) -> str:
     return str((tables_in(path) or {}).get("name") or path.stem)
 
 
-def body_for_motion(table: dict[str, Any], inputs: InputFiles | None, *, in_space: bool) -> Body | Restrained | Solid:
+def body_for_motion(
+    table: dict[str, Any], inputs: InputFiles | None, *, in_space: bool, with_stacks: bool = False
+) -> Body | Restrained | Stack | Solid:
     """Return the body of a table. With `in_space`, a 2D body with a stated depth becomes a 3D body."""
     body = any_body_of(table, inputs)
-    if not in_space or not isinstance(body, (Body, Restrained)):
+    if isinstance(body, Stack):
+        if not with_stacks:
+            without_restraints(body)
+        if in_space:
+            raise InvalidValueError("A stack moves along x and z only.")
+    if not in_space or not isinstance(body, PLANE_BODIES):
         return body
     without_restraints(body)
     tables = (tables_in(inputs.file(table["file"])) or {}) if inputs is not None and "file" in table else table
@@ -84,7 +93,7 @@ _OF_ANGLE = (
 )  # fmt: skip
 
 
-def _body_in_file(table: dict[str, Any], inputs: InputFiles | None) -> Body | Restrained | Solid:
+def _body_in_file(table: dict[str, Any], inputs: InputFiles | None) -> Body | Restrained | Stack | Solid:
     options = {key: value for key, value in table.items() if key != "file"}
     if odd := sorted(set(options) - set(_WITH_FILE)):
         raise InvalidValueError(

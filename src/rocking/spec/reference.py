@@ -53,6 +53,7 @@ _BODIES: dict[str, type[BaseModel]] = {
     "mass_points": schema.MassPointsTable,
     "frame": schema.FrameTable,
     "[restraint]": schema.RestraintTable,
+    "stack": schema.StackTable,
     "solid": schema.SolidTable,
     "[solid.part]": schema.PartTable,
     "box": schema.BoxTable,

@@ -141,7 +141,13 @@ def problem_of(
         _refuse(f"{mechanics.title} has one engine with the nonlinear equations", tables.settings, {"linear", "engine"})
     with located("settings"):
         settings, _ = mechanics.split(tables.settings.stated() | ground, mechanics.settings, frozenset())
-    restitutions = restitutions_of(tables.restitution, 0, [body], inputs, mechanics=mechanics)
+    restitutions: dict[str, Any] = {DEFAULT_RESTITUTION: DEFAULT_RESTITUTION}
+    if mechanics.has_restitution:
+        restitutions = restitutions_of(tables.restitution, 0, [body], inputs, mechanics=mechanics)
+    elif "restitution" in tables.model_fields_set:
+        raise InvalidValueError(
+            "{subject} has its own restitution. Remove {parameter}.", parameter="restitution", subject=mechanics.subject
+        )
     if not mechanics.is_compared and len(restitutions) > 1:
         names = ", ".join(restitutions)
         raise InvalidValueError(
@@ -172,7 +178,8 @@ def response_problem(document: "ResponseDocument", files: InputFiles, *, in_spac
     """Return the problem of an input file. `files` records the files that it names; `in_space` requires a 3D body."""
     table = document.motion
     with located("body"):
-        body = body_for_motion(document.body, files, in_space=in_space or (table is not None and table.y is not None))
+        turned = in_space or (table is not None and table.y is not None)
+        body = body_for_motion(document.body, files, in_space=turned, with_stacks=True)
     motion: Any = None
     with located("motion"):
         if table is not None:

@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import singledispatch
@@ -23,6 +24,7 @@ from rocking.bodies.region import Region
 from rocking.bodies.restrained import Restrained
 from rocking.bodies.restraints import KINDS, Restraint
 from rocking.bodies.section import Section
+from rocking.bodies.stack import Stack
 from rocking.checks import length_unit
 from rocking.conventions import Assumed, FloatArray
 from rocking.errors import BodyFileError, InvalidValueError, located
@@ -34,7 +36,7 @@ if TYPE_CHECKING:
 LARGEST_TOML = 16 * 2**20  # largest size of a TOML file; WKT, GeoJSON and DXF files may be larger [byte]
 
 
-def body_from_toml(text: str, name: str = "<text>", folder: str | Path | None = None) -> Body | Restrained:
+def body_from_toml(text: str, name: str = "<text>", folder: str | Path | None = None) -> Body | Restrained | Stack:
     r"""Return the body from the text of a body file.
 
     Parameters
@@ -48,8 +50,8 @@ def body_from_toml(text: str, name: str = "<text>", folder: str | Path | None = 
 
     Returns
     -------
-    Body or Restrained
-        Block, Section or MassPoints; with tables [[restraint]] a body with restraints.
+    Body, Restrained or Stack
+        Block, Section or MassPoints. With tables [[restraint]] a body with restraints, with a table [stack] a stack.
 
     Raises
     ------
@@ -71,12 +73,14 @@ def body_from_toml(text: str, name: str = "<text>", folder: str | Path | None = 
         return body_from_tables(parsed_toml(text), folder)
 
 
-def body_from_tables(tables: dict[str, Any], folder: str | Path | None = None) -> Body | Restrained:
+def body_from_tables(tables: dict[str, Any], folder: str | Path | None = None) -> Body | Restrained | Stack:
     """Return the body from the tables of a body file."""
     from rocking.bodies.formats.schema import BodyFile
 
     if "solid" in tables:
         raise BodyFileError("This is a 3D body, [solid]; a 2D body is needed.")
+    if "stack" in tables:
+        return _stack(tables, folder)
     document = validated(BodyFile, tables)
     body = _without_restraints(document, folder)
     if document.frame:
@@ -86,6 +90,22 @@ def body_from_tables(tables: dict[str, Any], folder: str | Path | None = None) -
         return body
     restraints = _restraints(document.restraint or [], length_unit(document.units))
     return Restrained(body, restraints, floor_slope=document.floor_slope or 0.0)
+
+
+def _stack(tables: dict[str, Any], folder: str | Path | None) -> Stack:
+    from rocking.bodies.formats.schema import BodyFile, StackDocument
+
+    document = validated(StackDocument, tables)
+    table, scale, bodies = document.stack, length_unit(document.units), []
+    for k, body in enumerate(table.body):
+        with located(f"stack.body[{k}]"):
+            one = validated(BodyFile, {"units": document.units, **body})
+            if one.restraint:
+                raise BodyFileError("Restraints are not allowed in a stack.")
+            bodies.append(_without_restraints(one, folder))
+    offsets = [value * scale for value in table.offsets] if isinstance(table.offsets, list) else table.offsets * scale
+    with located("stack"):
+        return Stack(bodies, friction=table.friction, restitution=table.restitution, offsets=offsets)
 
 
 def _without_restraints(document: "schema.BodyFile", folder: str | Path | None) -> Body:
@@ -243,7 +263,7 @@ _Coordinates = dict[float, float]
 
 
 @singledispatch
-def body_to_toml(body: Body | Restrained) -> str:
+def body_to_toml(body: Body | Restrained | Stack) -> str:
     """Return a body as the text of a body file.
 
     The text contains the same numbers to the last bit. Only a mirrored or scaled `Section` can differ in the last bits.
@@ -251,8 +271,8 @@ def body_to_toml(body: Body | Restrained) -> str:
 
     Parameters
     ----------
-    body : Body or Restrained
-        Block, Section or MassPoints, without or with restraints.
+    body : Body, Restrained or Stack
+        Block, Section or MassPoints, without or with restraints, or a stack of such bodies.
 
     Returns
     -------
@@ -332,6 +352,18 @@ def _(body: Restrained) -> str:
         if "area" in stated:
             del stated["stiffness"]
         lines += ["", "[[restraint]]", *(f"{name} = {_toml(value)}" for name, value in stated.items())]
+    return _lines(*lines)
+
+
+@body_to_toml.register
+def _(body: Stack) -> str:
+    joints = {"restitution": list(body.restitution), "offsets": list(body.offsets)}
+    if max(body.friction) < math.inf:
+        joints["friction"] = list(body.friction)
+    lines = ['units = "m"', "", "[stack]", *(f"{name} = {_row(values)}" for name, values in joints.items())]
+    for own in body.bodies:
+        tables = body_to_toml(own).removeprefix('units = "m"\n').rstrip("\n")
+        lines += ["", "[[stack.body]]", re.sub(r"^(\[+)", r"\1stack.body.", tables.lstrip("\n"), flags=re.MULTILINE)]
     return _lines(*lines)
 
 

@@ -24,6 +24,7 @@ from rocking.bodies.section import Section
 from rocking.bodies.solid.repair.log import InnerParts, Repair
 from rocking.bodies.solid.repair.wrap import SurfaceSource
 from rocking.bodies.solid.solid import Solid
+from rocking.bodies.stack import Stack
 from rocking.errors import BodyFileError, RockingError, located
 
 T = TypeVar("T")
@@ -78,7 +79,7 @@ class Request:
 
 def read_body(
     path: str | Path, *, units: str | None = None, density: float | None = None, **options: Unpack[Options]
-) -> Body | Restrained | Solid:
+) -> Body | Restrained | Stack | Solid:
     r"""Return the 2D or 3D body from a file.
 
     Parameters
@@ -98,9 +99,9 @@ def read_body(
 
     Returns
     -------
-    Body, Restrained or Solid
-        Block, Section, MassPoints, a body with the restraints of a TOML file, or a `Solid` with its `name`. `repairs`
-        of a solid contains one sentence for each change of the mesh and for each doubt about the mesh.
+    Body, Restrained, Stack or Solid
+        Block, Section, MassPoints, a body with the restraints of a TOML file, a stack, or a `Solid` with its `name`.
+        `repairs` of a solid contains one sentence for each change of the mesh and for each doubt about the mesh.
 
     Raises
     ------
@@ -218,7 +219,7 @@ def describes_solid(path: str | Path) -> bool:
         return False
 
 
-def _toml(request: Request) -> Body | Restrained | Solid:
+def _toml(request: Request) -> Body | Restrained | Stack | Solid:
     with located(request.path.name, "file"):
         solid = "solid" in parsed_toml(read_text(request.path, LARGEST_TOML))
     return _stated(request, solid_from_toml) if solid else _stated(request, body_from_toml)
@@ -278,7 +279,7 @@ def _mesh(request: Request) -> Solid:
     return solid
 
 
-PLANE: dict[str, Callable[[Request], Body | Restrained]] = {
+PLANE: dict[str, Callable[[Request], Body | Restrained | Stack]] = {
     ".toml": partial(_stated, read=body_from_toml),
     ".wkt": partial(_text, read=regions_from_wkt),
     **dict.fromkeys((".geojson", ".json"), partial(_text, read=regions_from_geojson)),
@@ -286,7 +287,7 @@ PLANE: dict[str, Callable[[Request], Body | Restrained]] = {
 }
 """Readers of 2D bodies by extension; a new format is one line here, or in `FORMATS` for 3D bodies."""
 
-FORMATS: dict[str, Callable[[Request], Body | Restrained | Solid]] = {
+FORMATS: dict[str, Callable[[Request], Body | Restrained | Stack | Solid]] = {
     **PLANE,
     ".toml": _toml,
     **dict.fromkeys([f".{kind}" for kind in MESH_FORMATS], _mesh),

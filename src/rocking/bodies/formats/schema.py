@@ -339,6 +339,38 @@ def _check_one(table: StrictTable, owner: str, keys: tuple[str, ...], shown: str
         )  # fmt: skip
 
 
+NotBelowZero = Annotated[float, Field(ge=0.0)]
+_OF_JOINTS = "one number, or one number per joint, lowest joint first"
+
+
+class StackTable(StrictTable):
+    """2D bodies on each other, lowest first, and the joints below them."""
+
+    body: Annotated[list[dict[str, Any]], Field(min_length=1, max_length=100)] = key(
+        "bodies, one table [[stack.body]] per body with one table of the body, as in a body file", ...,
+        allowed="1 to 100 tables with block, trapezoid, regular_polygon or section; mass_points at the top",
+    )  # fmt: skip
+    friction: NotBelowZero | list[NotBelowZero] | None = key(
+        "coefficient of friction of the joints [-]", usual="no sliding", allowed=_OF_JOINTS
+    )
+    restitution: Fraction | list[Fraction] = key(
+        "coefficient of normal restitution of the joints [-]", 0.0, allowed=f"{_OF_JOINTS}, below 1"
+    )
+    offsets: float | list[float] = key(
+        "distance of the middle of the feet from the middle of the top edge below [unit of the file]", 0.0,
+        allowed="one number, or one number per body above the lowest body",
+    )  # fmt: skip
+
+
+class StackDocument(StrictTable):
+    """A file of bodies on each other: a unit and the table [stack]."""
+
+    units: UnitName = Field(description="unit of all lengths")
+    name: str | None = key("name of the stack", allowed="any text: a label of results")
+    note: str | None = key("free text", allowed="any text: not used in computations")
+    stack: StackTable = Field(description="bodies and joints")
+
+
 Triple = Annotated[list[float], Field(min_length=3, max_length=3)]
 MOST_PARTS = 500  # largest number of parts; the time of the check for overlaps is proportional to its square
 

@@ -1,9 +1,11 @@
 """Plane bodies on each other."""
 
+from collections.abc import Mapping
 from typing import Any
 
 from rocking.bodies.stack import Stack
 from rocking.dynamics.mechanics_base import Combinations, PlaneMechanics
+from rocking.dynamics.settings import Settings
 from rocking.dynamics.stack.settings import StackSettings
 from rocking.errors import InvalidValueError
 
@@ -14,6 +16,7 @@ class StackRocking(PlaneMechanics):
     name, title, subject = "stack", "rocking of a stack", "a stack"
     settings = StackSettings
     options = frozenset({"engine"})
+    has_restitution = False
 
     def takes(self, body: Any, friction: Any, *, study: bool = False) -> bool:
         return isinstance(body, Stack)
@@ -22,9 +25,10 @@ class StackRocking(PlaneMechanics):
         return rotation, angular_velocity  # one value, or one value per body; checked later
 
     def begun(self, start: Any, rotation: Any, angular_velocity: Any) -> Any:
-        if start is not None:
-            raise InvalidValueError("a stack starts with rotation and angular_velocity, not with start")
-        return self.start_of(rotation, angular_velocity)
+        from rocking.dynamics.plane_frictional.base import rocking_start
+
+        begun = super().begun(start, rotation, angular_velocity)
+        return begun if start is None else rocking_start(begun)
 
     def follow(
         self, body: Any, motion: Any, restitution: Any, settings: StackSettings, *, start: Any, **options: Any
@@ -32,6 +36,9 @@ class StackRocking(PlaneMechanics):
         from rocking.dynamics.stack.response import response_of_stack
 
         return response_of_stack(body, motion, restitution, settings, start=start, **options)
+
+    def study_settings(self, body: Any, options: Mapping[str, Any]) -> Settings:
+        raise InvalidValueError("studies do not accept {subject}", subject=self.subject)
 
     @property
     def columns(self) -> tuple[str, ...]:

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _FINE, _AFTER, _FREE = 0.05, 15.0, 300.0  # products of p with time step and durations, as for one body
+_IMPACT = np.dtype([("time", "f8"), ("joint", "i8"), ("velocity_before", "f8"), ("velocity_after", "f8")])
 _CORNERS = {1: "right", -1: "left", 0: "closed"}
 _OPEN, _SLID = 1e-5, 1e-5  # smallest opening of a rocking joint [rad]; smallest displacement over the width
 
@@ -73,6 +74,16 @@ class StackResponse(ResponseBase):
     def angular_velocity(self) -> FloatArray:
         """Angular velocity theta' of every body, shape (samples, bodies) [rad/s]."""
         return self.trajectory.angular_velocity
+
+    @cached_property
+    def impacts(self) -> np.ndarray:
+        """Impacts in order of time: time, joint, and velocity of the opening before and after."""
+        rows = [
+            (event.time, event.joint + 1, _relative(event.before, event.joint), _relative(event.after, event.joint))
+            for event in self.trajectory.events
+            if event.kind == IMPACT
+        ]
+        return np.array(rows, dtype=_IMPACT)
 
     @property
     def opening(self) -> FloatArray:
@@ -197,14 +208,15 @@ class StackResponse(ResponseBase):
         """
         return super().answer() | {
             "body": self.body.answer(self.settings.gravity), "motion": motion_answer(self.motion, self.scale),
-            "energy_closure": self.energy_closure, "energy_lost": float(self.trajectory.lost[-1]),
+            "restitution": ", ".join(f"{value:g}" for value in dict.fromkeys(self.body.restitution)),
+            "energy_closure": self.energy_closure, "lost_in_joints": float(self.trajectory.lost[-1]),
             "interpenetration": self.trajectory.interpenetration, "energy_created": self.trajectory.energy_created,
             "warnings": self.doubts(),
         }  # fmt: skip
 
     @property
     def _values(self) -> dict[str, Any]:
-        return {"peak_rotation": self.peak_rotation, "impacts": self.trajectory.impacts}
+        return {"peak_rotation": self.peak_rotation}
 
     @property
     def _ending(self) -> str:
@@ -243,7 +255,7 @@ class StackResponse(ResponseBase):
         run = self.trajectory
         return {
             "time": self.time, "ground_acceleration": self.ground_acceleration, "kinetic_energy": run.kinetic,
-            "potential_energy": run.potential, "work_of_ground": run.work, "energy_lost": run.lost,
+            "potential_energy": run.potential, "work_of_ground": run.work, "lost_in_joints": run.lost,
         }  # fmt: skip
 
     def exported(self) -> "Table":
