@@ -107,7 +107,10 @@ class Run {
         for (std::size_t row : pending_) write_after(row);
         pending_.clear();
         bool rocks = false, slides = false;
-        for (std::size_t k = 0; k < laws.size(); ++k) rocks |= extremes[k].opening > kOpen, slides |= extremes[k].slip > kDisplaced * laws[k].width;
+        for (std::size_t k = 0; k < laws.size(); ++k) {
+            extremes[k].opening = std::max(extremes[k].opening, std::fabs(at[k + 1].angle - at[k].angle));
+            rocks |= extremes[k].opening > kOpen, slides |= extremes[k].slip > kDisplaced * laws[k].width;
+        }
         outcome = fallen >= 0 ? kOverturned : rocks && slides ? kRockedAndSlid : rocks ? kRocked : slides ? kSlid : kNoUplift;
         if (status != kGood) outcome = kFailed;
     }

@@ -474,3 +474,48 @@ def test_restitution_creates_no_energy(restitution):
     )
     with pytest.raises(InvalidValueError, match="reference engine"):
         rk.simulate(body, rk.pulses.sine(4.0, 0.8), engine="reference")
+
+
+THREE = ((1.0, 1.0), (0.8, 1.2), (0.6, 1.0))
+
+
+def peer(sizes, amplitude, period, end, step=2e-5):
+    """MuJoCo: bodies with three joints in the plane and stiff contacts. The ground motion is a tilt of gravity."""
+    mujoco = pytest.importorskip("mujoco")
+    bodies, base = "", 0.0
+    for width, height in sizes:
+        bodies += (
+            f'<body pos="0 0 {base + height / 2}"><joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/>'
+            f'<joint type="hinge" axis="0 1 0"/><geom type="box" size="{width / 2} .5 {height / 2}" density="1000"/>'
+            "</body>"
+        )
+        base += height
+    model = mujoco.MjModel.from_xml_string(
+        f'<mujoco><option timestep="{step}" gravity="0 0 -{G}" cone="elliptic" impratio="10" solver="Newton" '
+        'tolerance="1e-12" iterations="100"/><default><geom friction="2 0 0" solref="1e-4 1" '
+        f'solimp="0.999 0.9999 0.0001" condim="3"/></default><worldbody><geom type="plane" size="9 9 1"/>{bodies}'
+        "</worldbody></mujoco>"
+    )
+    data, states = mujoco.MjData(model), []
+    for _ in range(round(end / step)):
+        model.opt.gravity[0] = -amplitude * np.sin(2.0 * np.pi * data.time / period)
+        mujoco.mj_step(model, data)
+        states.append((data.time, *data.qpos[2::3]))
+    return np.array(states).T
+
+
+@fast
+@pytest.mark.verifies(
+    "other program", "MuJoCo, steps of 0.02 ms", within="3e-5 of the rotation before the first impact", control="within"
+)
+def test_a_stack_of_three_in_another_program():
+    """Up to the first impact MuJoCo gives the rotations of a stack of three that opens at two joints."""
+    options = {"gravity": G, "duration": 0.6, "longest_step": 5e-5}
+    pulse = rk.pulses.sine(5.0, 0.8)
+    response, slippery = (rk.simulate(stack(*THREE, friction=mu), pulse, **options) for mu in (2.0, 0.25))
+    until = response.time < response.impacts["time"][0]
+    time, *angles = peer(THREE, 5.0, 0.8, 0.55)
+    other = np.column_stack([np.interp(response.time[until], time, values) for values in angles])
+    assert (np.abs(response.opening[until]).max(axis=0) > 5e-4).tolist() == [True, True, False]
+    np.testing.assert_allclose(response.rotation[until], other, atol=3e-5 * np.abs(other).max())
+    assert np.abs(slippery.rotation[: until.sum()] - other).max() > 3e-3 * np.abs(other).max()  # negative control
