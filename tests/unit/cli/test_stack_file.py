@@ -65,11 +65,13 @@ def test_refusals(change, match):
         body_from_toml(COLUMN.replace(*change))
 
 
-def test_restraints_are_refused():
-    """No body of a stack has restraints."""
-    text = COLUMN + '[[stack.body.restraint]]\nkind = "tendon"\nx = 0\nstiffness = 1.0\n'
-    with pytest.raises(BodyFileError, match="Restraints are not allowed in a stack"):
-        body_from_toml(text)
+@pytest.mark.parametrize(
+    "more", ['[[stack.body.restraint]]\nkind = "tendon"\nx = 0\nstiffness = 1.0\n', "floor_slope = 0.1\n"]
+)
+def test_restraints_and_slopes_are_refused(more):
+    """No body of a stack has restraints or a floor of its own."""
+    with pytest.raises(BodyFileError, match=r"Key '(restraint|floor_slope)' is not allowed for a body of a stack"):
+        body_from_toml(COLUMN + more)
 
 
 def test_simulate_prints_the_joints(column, run):

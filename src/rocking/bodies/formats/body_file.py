@@ -93,16 +93,19 @@ def body_from_tables(tables: dict[str, Any], folder: str | Path | None = None) -
 
 
 def _stack(tables: dict[str, Any], folder: str | Path | None) -> Stack:
-    from rocking.bodies.formats.schema import BodyFile, StackDocument
+    from rocking.bodies.formats.schema import BODIES, BodyFile, StackDocument
 
     document = validated(StackDocument, tables)
     table, scale, bodies = document.stack, length_unit(document.units), []
     for k, body in enumerate(table.body):
         with located(f"stack.body[{k}]"):
-            one = validated(BodyFile, {"units": document.units, **body})
-            if one.restraint:
-                raise BodyFileError("Restraints are not allowed in a stack.")
-            bodies.append(_without_restraints(one, folder))
+            if odd := sorted(set(body) - set(BODIES)):
+                raise BodyFileError(
+                    "Key {key!r:.60} is not allowed for a body of a stack. Use one of {choice}.", key=odd[0],
+                    choice=", ".join(BODIES),
+                )  # fmt: skip
+            tables_of_body = validated(BodyFile, {"units": document.units, **body})
+            bodies.append(_without_restraints(tables_of_body, folder))
     offsets = [value * scale for value in table.offsets] if isinstance(table.offsets, list) else table.offsets * scale
     with located("stack"):
         return Stack(bodies, friction=table.friction, restitution=table.restitution, offsets=offsets)
