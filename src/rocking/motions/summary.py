@@ -11,7 +11,9 @@ from rocking.answers import Answer
 from rocking.conventions import g
 from rocking.messages import Message, listed
 from rocking.motions.components import Components, leading
+from rocking.motions.integrals import integral_doubts
 from rocking.motions.intensity import measure, sampled
+from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 
 GROUND = "ground"
@@ -98,6 +100,8 @@ class MotionSummary:
         Duration [s].
     provenance : tuple of str
         Source with the SHA-256 of every file, and all processing steps, in order.
+    doubts : tuple of str
+        Warnings about implausible accelerations, time steps, velocities and displacements.
     """
 
     name: str
@@ -106,6 +110,7 @@ class MotionSummary:
     peak_velocity: float
     duration: float
     provenance: tuple[str, ...]
+    doubts: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, motion: Any) -> "MotionSummary":
@@ -130,7 +135,10 @@ class MotionSummary:
         motion = Components(*(motion.get(axis) for axis in "xyz")) if isinstance(motion, Mapping) else motion
         velocity = float(measure("pgv").of(sampled(leading(motion))))
         source = provenance_of(motion, lambda _: "analytical pulse")
-        return cls(motion.name, support_of(motion), float(motion.peak), velocity, float(motion.duration), source)
+        return cls(
+            motion.name, support_of(motion), float(motion.peak), velocity, float(motion.duration), source,
+            _doubts_of(motion),
+        )  # fmt: skip
 
     def answer(self) -> Answer:
         """Return the summary as an answer.
@@ -143,6 +151,7 @@ class MotionSummary:
         return Answer({
             "name": self.name, "support": self.support, "peak_ground_acceleration": self.peak,
             "peak_ground_velocity": self.peak_velocity, "duration": self.duration, "provenance": self.provenance,
+            "warnings": self.doubts,
         })  # fmt: skip
 
 
@@ -156,8 +165,17 @@ def motion_answer(motion: Any, scale: float = 1.0) -> Answer | None:
         "scale": scale,
         "peak_ground_acceleration": size * summary.peak,
         "peak_ground_velocity": size * summary.peak_velocity,
-        "warnings": plausibility.of_acceleration(size * summary.peak),
+        "warnings": [*plausibility.of_acceleration(size * summary.peak), *summary.doubts]
+        if size != 1.0
+        else summary.doubts,
     }
+
+
+def _doubts_of(motion: Any) -> tuple[str, ...]:
+    if isinstance(motion, Components):
+        parts = zip("xyz", motion.parts, strict=True)
+        return tuple(f"{axis}: {doubt}" for axis, part in parts if part is not None for doubt in _doubts_of(part))
+    return (*motion.doubts, *(integral_doubts(motion) if isinstance(motion, GroundMotion) else ()))
 
 
 def summaries_of(motions: Any) -> tuple[MotionSummary, ...]:

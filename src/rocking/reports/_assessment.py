@@ -38,7 +38,7 @@ from rocking.reports.document import (
     answer_table,
     table,
 )
-from rocking.reports.motion_sources import motion_sources, peak_display
+from rocking.reports.motion_sources import motion_doubts, motion_sources, peak_display
 from rocking.reports.response_document import body_table
 from rocking.restitution import models
 from rocking.version import SOFTWARE
@@ -195,6 +195,7 @@ def assessment_document(
     verdict = [
         Paragraph(assessment.verdict, "", mark),
         *map(Paragraph, (assessment.margin_sentence, assessment.probability_sentence)),
+        *motion_doubts(assessment.prediction.motions),
     ]
     title = name or signed["project"] or "A body in an earthquake"
     return Document(title, subtitle, sections, verdict=verdict, footer=SOFTWARE)
@@ -203,9 +204,9 @@ def assessment_document(
 def _models(assessment: BodyAssessment) -> ReportTable:
     rows = assessment.model_rows
     note = (
-        "r: velocity after an impact over velocity before. Smallest factor: of all motions, both polarities; infinite "
-        "if no computed factor overturns the body. The ends of the calibrated model are those of its 95 % interval for "
-        "a single body."
+        "r: velocity after an impact over velocity before. Margin: smallest factor on a motion with overturning, of "
+        "all motions and both polarities; infinite if no computed factor overturns the body. The ends of the "
+        "calibrated model are those of its 95 % interval for a single body."
     )
     if assessment.standing is not None:
         note += (
@@ -234,8 +235,8 @@ def _motions(assessment: BodyAssessment) -> ReportTable:
     ]  # fmt: skip
     note = (
         "Factors scale the motion; two components are combined in the direction of the smallest factor. "
-        "Overturns at: the smallest factor with any model. A body with a factor below 1 may not overturn under the "
-        "unscaled motion; such a factor is not a margin."
+        "Margin: the smallest factor with overturning with any model. With a factor below 1 the body can still stand "
+        "under the unscaled motion; then the factor is no margin."
     )
     marks = {"overturned": ["bad" if fraction > 0.0 else "good" for _, fraction in ranked]}
     display = peak_display(assessment.prediction.motions)

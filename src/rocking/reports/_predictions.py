@@ -17,7 +17,7 @@ from rocking.reports.document import (
     judged,
     table,
 )
-from rocking.reports.motion_sources import motion_sources, motion_table
+from rocking.reports.motion_sources import motion_doubts, motion_sources, motion_table
 from rocking.spec.validation import FolderValidation
 from rocking.version import SOFTWARE
 
@@ -49,7 +49,9 @@ def prediction_content(prediction: Prediction, *, name: str, date: str) -> Conte
         ReportSection("Probabilities", [*map(Paragraph, prediction.sentences[1:]), picture, motion_table(prediction)]),
         ReportSection("Contributions to the variance", [contributions]),
         ReportSection("The body", body),
-        ReportSection("Ground motions: source and processing", [motion_sources(prediction.motions)]),
+        ReportSection("Ground motions: source and processing", [
+            *motion_doubts(prediction.motions), motion_sources(prediction.motions),
+        ]),
         _assumed(prediction),
         ReportSection("Method", [
             Paragraph(_PREDICTED), Paragraph(f"{_count(prediction)}{failed}; seed {prediction.seed}."),

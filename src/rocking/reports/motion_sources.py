@@ -7,9 +7,9 @@ from rocking.answers import Display
 from rocking.decision.prediction import Prediction
 from rocking.motions.summary import MotionSummary, peak_names, provenance_rows
 from rocking.quantities import QUANTITIES, Quantity, closely
-from rocking.reports.document import ReportTable, answer_table, table
+from rocking.reports.document import Paragraph, ReportTable, answer_table, table
 
-_MOST = 200
+_MOST, _MOST_DOUBTS = 200, 8
 
 
 def motion_sources(motions: Sequence[MotionSummary]) -> ReportTable:
@@ -17,6 +17,14 @@ def motion_sources(motions: Sequence[MotionSummary]) -> ReportTable:
     rows = provenance_rows(motions)
     note = f"{len(rows) - _MOST} more motions; the JSON output lists all." if len(rows) > _MOST else ""
     return table("", ["motion", "source and processing steps, in order"], rows[:_MOST], note)
+
+
+def motion_doubts(motions: Sequence[MotionSummary]) -> list[Paragraph]:
+    """Return the warnings about motions as paragraphs."""
+    doubts = [(motion.name, doubt) for motion in motions for doubt in motion.doubts]
+    shown = [Paragraph(f"{name}: {doubt}.", "Check the input:", "fair") for name, doubt in doubts[:_MOST_DOUBTS]]
+    left = len(doubts) - len(shown)
+    return [*shown, *([Paragraph(f"{left} more warnings about motions; the JSON output lists all.")] if left else [])]
 
 
 def peak_display(motions: Sequence[MotionSummary], **own: Quantity) -> Display:

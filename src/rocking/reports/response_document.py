@@ -37,7 +37,7 @@ from rocking.reports.document import (
     answer_table,
 )
 from rocking.reports.document import table as report_table
-from rocking.reports.motion_sources import motion_sources
+from rocking.reports.motion_sources import motion_doubts, motion_sources
 from rocking.reports.response_facts import ModelAgreement, measure_quantities, measures_of, restitution_words
 from rocking.version import SOFTWARE
 
@@ -139,7 +139,8 @@ def ground_blocks(motion: Motion | None, measures: Mapping[str, Measure]) -> lis
         f"Acceleration, velocity and displacement of the {support_of(motion)}, and the response spectrum for "
         "5 % damping"
     )
-    return [Picture("motion", caption, 74), _measures(measures), motion_sources([MotionSummary.of(motion)])]
+    summary = [MotionSummary.of(motion)]
+    return [Picture("motion", caption, 74), *motion_doubts(summary), _measures(measures), motion_sources(summary)]
 
 
 def _response(results: ResponseReport) -> list[Block]:

@@ -231,7 +231,7 @@ def of_no_kind(restitution: object) -> str:
     if not hasattr(kind, "raw_coefficient"):
         return (
             f"a {kind.__name__} object without method raw_coefficient; a model of your own must be a subclass of "
-            f"RestitutionModel with {_METHOD}"
+            f"RestitutionModel with {_METHOD}, and a law of the impact velocity a subclass of dynamics.ImpactLaw"
         )
     return f"a {kind.__name__} object, which is not a subclass of RestitutionModel"
 
