@@ -47,7 +47,8 @@ def restrained_picture(response: "RestrainedResponse") -> "Figure":
         colour = COLORS[k % len(COLORS)]
         axes[2].plot(time, 1e-3 * response.restraint_force[:, k], color=colour, linewidth=0.9, label=restraint.name)
         axes[3].plot(time, 1e-3 * response.restraint_work[:, k], color=colour, linewidth=0.9)
-    legend_above(axes[2], 4)
+    if response.body.restraints:
+        legend_above(axes[2], 4)
     axes[2].set_ylabel("force\n[kN]")
     axes[3].plot(
         time, 1e-3 * response.forces.energy_lost, color=INK, linewidth=0.9, linestyle="dashed", label="impacts"
@@ -127,6 +128,7 @@ def _forces(axes: Any, body: "Restrained", elongation: "FloatArray", force: "Flo
             1e3 * elongation[:, k], 1e-3 * force[:, k], color=COLORS[k % len(COLORS)], linewidth=0.9,
             label=restraint.name,
         )  # fmt: skip
-    legend_above(axes[1], 2)
+    if body.restraints:
+        legend_above(axes[1], 2)
     axes[1].set_xlabel("elongation [mm]")
     axes[1].set_ylabel("force [kN]")

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 from rocking.answers import Display
+from rocking.bodies import Restrained, Wall
 from rocking.dynamics.restrained.response import RestrainedResponse
 from rocking.dynamics.restrained.rows import uplift_accelerations
 from rocking.dynamics.restrained.settings import RestrainedStudySettings
@@ -81,10 +82,14 @@ def _laws(response: RestrainedResponse) -> Block:
 
 
 def _uplift(response: RestrainedResponse) -> Paragraph:
-    settings = RestrainedStudySettings(**response.settings.stated, body=response.body)
+    body = response.body
+    forces = [restraint for restraint in body.restraints if not isinstance(restraint, Wall)]
+    without_walls = Restrained(body.body, forces, floor_slope=body.floor_slope)
+    settings = RestrainedStudySettings(**response.settings.stated, body=without_walls)
     right, left = uplift_accelerations(settings, 1)[:, 0]
     values = f"{right:.4g} m/s2 about the right foot, {left:.4g} m/s2 about the left foot."
-    return Paragraph(values, "Ground acceleration at uplift, with prestress and slip forces:")
+    walls = ", without walls" if len(forces) < len(body.restraints) else ""
+    return Paragraph(values, f"Ground acceleration at uplift, with prestress and slip forces{walls}:")
 
 
 def _damage(response: RestrainedResponse) -> list[Paragraph]:
