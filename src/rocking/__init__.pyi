@@ -10,6 +10,7 @@ from .bodies import Block as Block
 from .bodies import Frame as Frame
 from .bodies import FrictionDamper as FrictionDamper
 from .bodies import Fuse as Fuse
+from .bodies import Isolated as Isolated
 from .bodies import MassPoints as MassPoints
 from .bodies import Region as Region
 from .bodies import Restrained as Restrained

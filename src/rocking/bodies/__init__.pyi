@@ -4,6 +4,7 @@ from .block import Block as Block
 from .body import Body as Body
 from .body import Side as Side
 from .frame import Frame as Frame
+from .isolated import Isolated as Isolated
 from .mass_points import MassPoints as MassPoints
 from .region import Region as Region
 from .restrained import Restrained as Restrained

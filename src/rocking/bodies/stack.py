@@ -12,6 +12,7 @@ from rocking import checks, conventions
 from rocking.answers import Answer
 from rocking.bodies.block import Block
 from rocking.bodies.body import Body, Side
+from rocking.bodies.isolated import Isolated
 from rocking.bodies.mass_points import MassPoints
 from rocking.bodies.restrained import Restrained
 from rocking.bodies.section import Section
@@ -256,8 +257,8 @@ class Stack:
                     )  # fmt: skip
 
 
-PLANE_BODIES = (Body, Restrained, Stack)
-"""Classes of plane bodies: alone, with restraints, and on each other."""
+PLANE_BODIES = (Body, Restrained, Isolated, Stack)
+"""Classes of plane bodies: alone, with restraints, on an isolated base, and on each other."""
 
 
 def top_edge(body: Body) -> tuple[float, float]:

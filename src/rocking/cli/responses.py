@@ -26,7 +26,7 @@ from rocking.spec.response import ResponseProblem
 _PEAKS = (
     "peak_rotation", "peak_ratio", "peak_tilt", "sliding_distance", "residual_displacement", "friction_usage",
     "error_estimate", "residual_rotation", "uplift_height", "largest_base_shear", "largest_overturning_moment",
-    "lost_contact_time",
+    "lost_contact_time", "largest_base_displacement", "residual_base_displacement",
 )  # fmt: skip
 _RESTRAINTS = (
     "restraint", "largest_force", "smallest_force", "largest_elongation", "yield_count", "is_broken", "residual_force",
@@ -38,7 +38,7 @@ _JOINTS = (
 )  # fmt: skip
 _DETAILS = (
     "gravity", "friction_of_motion", "friction_of_impacts", "least_force", "energy_lost", "lost_in_friction",
-    "lost_in_joints", "energy_closure", "engine", "growth_rate", "growth_time", "relative_change",
+    "lost_in_joints", "lost_in_isolators", "energy_closure", "engine", "growth_rate", "growth_time", "relative_change",
 )  # fmt: skip
 _OF_STANDING = {"peak_rotation", "peak_ratio", "peak_tilt"}
 _TABLES = {
@@ -49,7 +49,8 @@ _TABLES = {
         "Impacts",
         (
             "time", "feet", "velocity_before", "velocity_after", "coefficient", "foot", "energy_before",
-            "energy_after", "impulse", "contact", "vertices", "energy_lost", "slips",
+            "energy_after", "impulse", "contact", "vertices", "energy_lost", "slips", "base_velocity_before",
+            "base_velocity_after",
         ),
     ),
     "joint_events": (

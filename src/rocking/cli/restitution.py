@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rocking.answers import Answer, Display
-from rocking.bodies import Body, Restrained
+from rocking.bodies import Body, Isolated, Restrained
 from rocking.cli import completion, options
 from rocking.cli.arguments import Arguments, document_file, hinted, with_sets
 from rocking.cli.exports import DRAWN, PICTURES, Export, Exports, write_records
@@ -19,7 +19,7 @@ from rocking.conventions import g
 from rocking.errors import located
 from rocking.messages import listed
 from rocking.quantities import closely
-from rocking.spec.bodies import body_for_motion
+from rocking.spec.bodies import body_for_motion, without_restraints
 from rocking.spec.fields import JobTable
 from rocking.spec.reading import CommandFiles, InputFiles, checked, tables_in
 from rocking.spec.settings_tables import SettingsTable
@@ -87,6 +87,8 @@ def restitution(
         )
     subject, gravity = named_body(arguments, quiet=as_json, in_space="space" in exports.names)
     length = arguments.length or "m"
+    if isinstance(subject, Isolated):
+        without_restraints(subject)
     if isinstance(subject, Restrained):
         note = "restraints give no impulse at an impact; the coefficients are of the body without restraints."
         print(f"{context.params['body']}: {note}", file=sys.stderr if as_json else sys.stdout)

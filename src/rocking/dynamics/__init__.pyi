@@ -8,6 +8,8 @@ from .impact_laws import ConstantRestitution as ConstantRestitution
 from .impact_laws import ImpactLaw as ImpactLaw
 from .impact_laws import RandomRestitution as RandomRestitution
 from .impact_laws import SpeedRestitution as SpeedRestitution
+from .isolated.response import IsolatedResponse as IsolatedResponse
+from .isolated.settings import IsolatedSettings as IsolatedSettings
 from .many import simulate_many as simulate_many
 from .parameters import RockingParameters as RockingParameters
 from .parameters import RockingSide as RockingSide

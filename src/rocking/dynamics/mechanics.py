@@ -9,6 +9,7 @@ from typing import Any
 from rocking import conventions
 from rocking.bodies import PLANE_BODIES
 from rocking.dynamics.frictional.mechanics import HullRocking
+from rocking.dynamics.isolated.mechanics import IsolatedRocking
 from rocking.dynamics.mechanics_base import Mechanics, in_space
 from rocking.dynamics.plane.mechanics import PlaneRocking
 from rocking.dynamics.plane_frictional.mechanics import PlaneContact
@@ -19,7 +20,8 @@ from rocking.dynamics.stack.mechanics import StackRocking
 from rocking.restitution.headline import label_of
 
 MECHANICS: tuple[Mechanics, ...] = (
-    RestrainedRocking(), StackRocking(), PlaneRocking(), PlaneContact(), SpaceRocking(), HullRocking()
+    IsolatedRocking(), RestrainedRocking(), StackRocking(), PlaneRocking(), PlaneContact(), SpaceRocking(),
+    HullRocking(),
 )  # fmt: skip
 
 

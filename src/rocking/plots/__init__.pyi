@@ -17,6 +17,7 @@ from .ground_motion import spectra_picture as spectra_picture
 from .identification import identification_picture as identification_picture
 from .inventory import inventory_distribution as inventory_distribution
 from .inventory import inventory_picture as inventory_picture
+from .isolated import isolated_picture as isolated_picture
 from .long_run import basins_picture as basins_picture
 from .long_run import bifurcation_picture as bifurcation_picture
 from .long_run import lyapunov_picture as lyapunov_picture

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from rocking import checks
-from rocking.bodies import PLANE_BODIES, Block, Body, Restrained, Section, Stack
+from rocking.bodies import PLANE_BODIES, Block, Body, Isolated, Restrained, Section, Stack
 from rocking.bodies.formats import read_body
 from rocking.bodies.formats.body_file import body_from_tables
 from rocking.bodies.formats.reader import KNOWN
@@ -14,7 +14,7 @@ from rocking.checks import length_unit
 from rocking.errors import InvalidValueError
 from rocking.spec.reading import InputFiles, tables_in
 
-_OUTSIDE = ("units", "name", "note", "frame", "restraint", "floor_slope")
+_OUTSIDE = ("units", "name", "note", "frame", "isolator", "restraint", "floor_slope")
 
 
 def body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body:
@@ -25,18 +25,20 @@ def body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body:
     return body
 
 
-def without_restraints(body: Body | Restrained | Stack | Solid) -> Body | Solid:
-    """Return a body, or raise an error if it has restraints or is a stack."""
+def without_restraints(body: Body | Restrained | Isolated | Stack | Solid) -> Body | Solid:
+    """Return a body, or raise an error if it has restraints or an isolated base, or is a stack."""
     if isinstance(body, Stack):
         raise InvalidValueError("This analysis does not support stacks. `rocking simulate` supports stacks.")
     if isinstance(body, Restrained):
         if not body.restraints:
             raise InvalidValueError("This analysis does not support a sloping floor. Remove floor_slope.")
         raise InvalidValueError("This analysis does not support restraints. Remove [[restraint]].")
+    if isinstance(body, Isolated):
+        raise InvalidValueError("This analysis does not support isolated bases. Remove [isolator].")
     return body
 
 
-def any_body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body | Restrained | Stack | Solid:
+def any_body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body | Restrained | Isolated | Stack | Solid:
     """Return the 2D or 3D body of a table."""
     if "file" in table:
         return _body_in_file(table, inputs)
@@ -64,7 +66,7 @@ def name_of(table: dict[str, Any], folder: Path) -> str:
 
 def body_for_motion(
     table: dict[str, Any], inputs: InputFiles | None, *, in_space: bool, with_stacks: bool = False
-) -> Body | Restrained | Stack | Solid:
+) -> Body | Restrained | Isolated | Stack | Solid:
     """Return the body of a table. With `in_space`, a 2D body with a stated depth becomes a 3D body."""
     body = any_body_of(table, inputs)
     if isinstance(body, Stack):
@@ -93,7 +95,7 @@ _OF_ANGLE = (
 )  # fmt: skip
 
 
-def _body_in_file(table: dict[str, Any], inputs: InputFiles | None) -> Body | Restrained | Stack | Solid:
+def _body_in_file(table: dict[str, Any], inputs: InputFiles | None) -> Body | Restrained | Isolated | Stack | Solid:
     options = {key: value for key, value in table.items() if key != "file"}
     if odd := sorted(set(options) - set(_WITH_FILE)):
         raise InvalidValueError(

@@ -52,6 +52,7 @@ _BODIES: dict[str, type[BaseModel]] = {
     "[section.region]": schema.RegionTable,
     "mass_points": schema.MassPointsTable,
     "frame": schema.FrameTable,
+    "isolator": schema.IsolatorTable,
     "[restraint]": schema.RestraintTable,
     "stack": schema.StackTable,
     "solid": schema.SolidTable,

@@ -4,6 +4,9 @@ import json
 
 import pytest
 
+import rocking as rk
+from rocking.bodies.formats import body_from_toml, body_to_toml
+
 BLOCK = 'units = "m"\n[block]\nwidth = 1.0\nheight = 6.0\ndepth = 1.0\nmass = 4000.0\n'
 PIER = BLOCK + '[[restraint]]\nkind = "tendon"\nx = 0.5\nstiffness = 500e3\nprestress = 20e3\n'
 DOCUMENT = PIER.replace("[block]", "[body.block]").replace("[[restraint]]", "[[body.restraint]]")
@@ -57,3 +60,35 @@ def test_simulate_names_the_projection(run, file):
     answer = json.loads(run("simulate", path, "sine:amplitude=4,period=0.8", "--json")[1])
     assert answer["body"]["beam_mass"] == 5000.0
     assert answer["other_models"] == {}
+
+
+ISOLATED = BLOCK + "[isolator]\nbase_mass = 500\nperiod = 1.5\ndamping_ratio = 0.1\n"
+
+
+def test_simulate_shows_the_clearance_of_an_isolated_base(run, file):
+    """The command states the displacement of the base; the text of the file gives the same base."""
+    path = file(ISOLATED, "isolated.toml")
+    code, out, err = run("simulate", path, "sine:amplitude=4,period=0.8")
+    assert (code, err) == (0, "")
+    assert "Largest base displacement" in out
+    answer = json.loads(run("simulate", path, "sine:amplitude=4,period=0.8", "--json")[1])
+    isolated = body_from_toml(ISOLATED)
+    response = rk.simulate(isolated, rk.pulses.sine(4.0, 0.8))
+    assert answer["largest_base_displacement"] == pytest.approx(response.largest_base_displacement, rel=1e-9)
+    assert answer["body"]["base_mass"] == 500.0
+    assert body_from_toml(body_to_toml(isolated)).stiffness == isolated.stiffness
+
+
+@pytest.mark.parametrize("command", ["map", "fragility", "predict", "assess", "overturning-pga", "equilibria"])
+def test_other_commands_refuse_an_isolated_base(run, file, command):
+    motion = [] if command == "equilibria" else ["sine:amplitude=4,period=0.8"]
+    code, out, err = run(command, file(ISOLATED, "isolated.toml"), *motion)
+    assert code != 0
+    assert "This analysis does not support isolated bases." in err
+    assert "Traceback" not in out + err
+
+
+def test_an_isolated_base_has_no_restraints(run, file):
+    code, _, err = run("simulate", file(ISOLATED + PIER[len(BLOCK) :], "both.toml"), "sine:amplitude=4,period=0.8")
+    assert code != 0
+    assert "A body with [isolator] has no [[restraint]] and no floor_slope" in err

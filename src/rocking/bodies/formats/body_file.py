@@ -19,6 +19,7 @@ from rocking.bodies.formats.geojson import regions_from_geojson
 from rocking.bodies.formats.wkt import regions_from_wkt
 from rocking.bodies.formats.words import check_count, read_text, validated
 from rocking.bodies.frame import Frame
+from rocking.bodies.isolated import Isolated
 from rocking.bodies.mass_points import MassPoints
 from rocking.bodies.region import Region
 from rocking.bodies.restrained import Restrained
@@ -36,7 +37,9 @@ if TYPE_CHECKING:
 LARGEST_TOML = 16 * 2**20  # largest size of a TOML file; WKT, GeoJSON and DXF files may be larger [byte]
 
 
-def body_from_toml(text: str, name: str = "<text>", folder: str | Path | None = None) -> Body | Restrained | Stack:
+def body_from_toml(
+    text: str, name: str = "<text>", folder: str | Path | None = None
+) -> Body | Restrained | Isolated | Stack:
     r"""Return the body from the text of a body file.
 
     Parameters
@@ -50,8 +53,9 @@ def body_from_toml(text: str, name: str = "<text>", folder: str | Path | None = 
 
     Returns
     -------
-    Body, Restrained or Stack
-        Block, Section or MassPoints. With tables [[restraint]] a body with restraints, with a table [stack] a stack.
+    Body, Restrained, Isolated or Stack
+        Block, Section or MassPoints. With tables [[restraint]] a body with restraints, with a table [stack] a stack,
+        with a table [isolator] a body on an isolated base.
 
     Raises
     ------
@@ -73,7 +77,7 @@ def body_from_toml(text: str, name: str = "<text>", folder: str | Path | None = 
         return body_from_tables(parsed_toml(text), folder)
 
 
-def body_from_tables(tables: dict[str, Any], folder: str | Path | None = None) -> Body | Restrained | Stack:
+def body_from_tables(tables: dict[str, Any], folder: str | Path | None = None) -> Body | Restrained | Isolated | Stack:
     """Return the body from the tables of a body file."""
     from rocking.bodies.formats.schema import BodyFile
 
@@ -86,6 +90,11 @@ def body_from_tables(tables: dict[str, Any], folder: str | Path | None = None) -
     if document.frame:
         with located("frame"):
             body = Frame([body] * document.frame.columns, **document.frame.model_dump(exclude={"columns"}))
+    if document.isolator:
+        if document.restraint or document.floor_slope:
+            raise BodyFileError("A body with [isolator] has no [[restraint]] and no floor_slope. Remove them.")
+        with located("isolator"):
+            return Isolated(body, **document.isolator.model_dump(exclude_none=True))
     if not document.restraint and not document.floor_slope:
         return body
     restraints = _restraints(document.restraint or [], length_unit(document.units))
@@ -266,7 +275,7 @@ _Coordinates = dict[float, float]
 
 
 @singledispatch
-def body_to_toml(body: Body | Restrained | Stack) -> str:
+def body_to_toml(body: Body | Restrained | Isolated | Stack) -> str:
     """Return a body as the text of a body file.
 
     The text contains the same numbers to the last bit. Only a mirrored or scaled `Section` can differ in the last bits.
@@ -274,8 +283,8 @@ def body_to_toml(body: Body | Restrained | Stack) -> str:
 
     Parameters
     ----------
-    body : Body, Restrained or Stack
-        Block, Section or MassPoints, without or with restraints, or a stack of such bodies.
+    body : Body, Restrained, Isolated or Stack
+        Block, Section or MassPoints, without or with restraints or an isolated base, or a stack of bodies.
 
     Returns
     -------
@@ -339,6 +348,13 @@ def _(body: Frame) -> str:
         raise InvalidValueError("A body file describes frames with equal columns only.")
     beam = f"beam_mass = {_number(body.beam_mass)}", f'beam_on = "{body.beam_on}"'
     return _lines(texts[0].rstrip("\n"), "", "[frame]", f"columns = {len(body.columns)}", *beam)
+
+
+@body_to_toml.register
+def _(body: Isolated) -> str:
+    names = ("base_mass", "stiffness", "damping", "friction")
+    values = (f"{name} = {_number(getattr(body, name))}" for name in names)
+    return _lines(body_to_toml(body.body).rstrip("\n"), "", "[isolator]", *values)
 
 
 @body_to_toml.register

@@ -18,6 +18,7 @@ from rocking.bodies.formats.mesh import MESH_FORMATS, solid_from_mesh
 from rocking.bodies.formats.solid_file import solid_from_toml
 from rocking.bodies.formats.wkt import regions_from_wkt
 from rocking.bodies.formats.words import Placement, read_text, readable, unit_to_state
+from rocking.bodies.isolated import Isolated
 from rocking.bodies.region import Region
 from rocking.bodies.restrained import Restrained
 from rocking.bodies.section import Section
@@ -79,7 +80,7 @@ class Request:
 
 def read_body(
     path: str | Path, *, units: str | None = None, density: float | None = None, **options: Unpack[Options]
-) -> Body | Restrained | Stack | Solid:
+) -> Body | Restrained | Isolated | Stack | Solid:
     r"""Return the 2D or 3D body from a file.
 
     Parameters
@@ -99,7 +100,7 @@ def read_body(
 
     Returns
     -------
-    Body, Restrained, Stack or Solid
+    Body, Restrained, Isolated, Stack or Solid
         Block, Section, MassPoints, a body with the restraints of a TOML file, a stack, or a `Solid` with its `name`.
         `repairs` of a solid contains one sentence for each change of the mesh and for each doubt about the mesh.
 
@@ -219,7 +220,7 @@ def describes_solid(path: str | Path) -> bool:
         return False
 
 
-def _toml(request: Request) -> Body | Restrained | Stack | Solid:
+def _toml(request: Request) -> Body | Restrained | Isolated | Stack | Solid:
     with located(request.path.name, "file"):
         solid = "solid" in parsed_toml(read_text(request.path, LARGEST_TOML))
     return _stated(request, solid_from_toml) if solid else _stated(request, body_from_toml)
@@ -279,7 +280,7 @@ def _mesh(request: Request) -> Solid:
     return solid
 
 
-PLANE: dict[str, Callable[[Request], Body | Restrained | Stack]] = {
+PLANE: dict[str, Callable[[Request], Body | Restrained | Isolated | Stack]] = {
     ".toml": partial(_stated, read=body_from_toml),
     ".wkt": partial(_text, read=regions_from_wkt),
     **dict.fromkeys((".geojson", ".json"), partial(_text, read=regions_from_geojson)),
@@ -287,7 +288,7 @@ PLANE: dict[str, Callable[[Request], Body | Restrained | Stack]] = {
 }
 """Readers of 2D bodies by extension; a new format is one line here, or in `FORMATS` for 3D bodies."""
 
-FORMATS: dict[str, Callable[[Request], Body | Restrained | Stack | Solid]] = {
+FORMATS: dict[str, Callable[[Request], Body | Restrained | Isolated | Stack | Solid]] = {
     **PLANE,
     ".toml": _toml,
     **dict.fromkeys([f".{kind}" for kind in MESH_FORMATS], _mesh),

@@ -220,6 +220,21 @@ class FrameTable(StrictTable):
     )
 
 
+class IsolatorTable(StrictTable):
+    """A base on isolators below the body. Without stiffness, damping and friction, the base is on rollers."""
+
+    base_mass: Positive = Field(description="mass of the base [kg]")
+    period: Positive | None = key("period of body and base on the springs, without rocking [s]", usual="no springs")
+    damping_ratio: Annotated[float, Field(ge=0.0, le=10.0)] | None = key(
+        "damping ratio of body and base, with period [-]", usual="0"
+    )
+    stiffness: Cut | None = key("horizontal stiffness of the isolators, instead of period [N/m]", usual="0")
+    damping: Cut | None = key("coefficient of the dashpot, instead of damping_ratio [N s/m]", usual="0")
+    friction: Annotated[float, Field(ge=0.0, le=10.0)] | None = key(
+        "coefficient of friction between base and ground [-]", usual="0"
+    )
+
+
 _OF_STIFFNESS = "stiffness in its place"
 
 
@@ -293,6 +308,7 @@ class BodyFile(StrictTable):
     section: SectionTable | None = _body("section of one or more polygons")
     mass_points: MassPointsTable | None = _body("body of mass points")
     frame: FrameTable | None = key("beam and number of columns; the other table of the body describes a column")
+    isolator: IsolatorTable | None = key("base on isolators below the body")
     restraint: list[RestraintTable] | None = key("restraints, one table per restraint")
     floor_slope: float | None = key(
         "slope of the floor, positive if the floor rises to the right [rad]", usual="0",
