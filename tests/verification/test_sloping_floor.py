@@ -204,7 +204,8 @@ def test_many_and_maps():
 
 @pytest.mark.verifies("behaviour")
 def test_doors(tmp_path):
-    """Files, answers and refusals of slopes."""
+    """Files, answers, pictures, reports and refusals of slopes."""
+    rk.free_rocking(on_slope(), 0.05, **OPTIONS).report(tmp_path / "slope.html")
     body = on_slope(SKEW, rk.Tendon(x=0.3, stiffness=1e5))
     path = tmp_path / "body.toml"
     for subject in (body, on_slope()):

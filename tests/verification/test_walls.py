@@ -327,13 +327,16 @@ def test_sorrentino(engine):
 
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.verifies("behaviour")
-def test_a_rigid_wall_blocks_one_direction(engine):
+def test_a_rigid_wall_blocks_one_direction(engine, tmp_path):
     """Under a record the body rotates only away from the wall, and a rotation into the wall is refused."""
     body = at_wall(SLENDER, law="plastic", stiffness=None)
     response = rk.simulate(body, record(7), "housner", gravity=G, engine=engine)
     assert response.rotation.min() == 0.0
     assert response.rotation.max() > 0.005
     assert response.trajectory.uplifts > 1
+    response.report(tmp_path / "report.html")
+    text = " ".join((tmp_path / "report.html").read_text("utf-8").split())
+    assert "2.453 m/s2 about the right foot, no uplift about the left foot at a rigid wall" in text
     for refused in (lambda: rk.free_rocking(body, -0.05, "housner"), lambda: rk.pushover(body, [0.0, -0.01])):
         with pytest.raises(InvalidValueError, match="cannot rotate to the left"):
             refused()

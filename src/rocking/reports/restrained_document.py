@@ -1,10 +1,10 @@
 """Report of a body with restraints: body, restraints, energy loss of an impact, motion, response, forces."""
 
+import math
 from collections.abc import Callable
 from typing import Any
 
 from rocking.answers import Display
-from rocking.bodies import Restrained, Wall
 from rocking.dynamics.restrained.response import RestrainedResponse
 from rocking.dynamics.restrained.rows import uplift_accelerations
 from rocking.dynamics.restrained.settings import RestrainedStudySettings
@@ -82,14 +82,14 @@ def _laws(response: RestrainedResponse) -> Block:
 
 
 def _uplift(response: RestrainedResponse) -> Paragraph:
-    body = response.body
-    forces = [restraint for restraint in body.restraints if not isinstance(restraint, Wall)]
-    without_walls = Restrained(body.body, forces, floor_slope=body.floor_slope)
-    settings = RestrainedStudySettings(**response.settings.stated, body=without_walls)
-    right, left = uplift_accelerations(settings, 1)[:, 0]
-    values = f"{right:.4g} m/s2 about the right foot, {left:.4g} m/s2 about the left foot."
-    walls = ", without walls" if len(forces) < len(body.restraints) else ""
-    return Paragraph(values, f"Ground acceleration at uplift, with prestress and slip forces{walls}:")
+    settings = RestrainedStudySettings(**response.settings.stated, body=response.body)
+    values = [
+        f"{value:.4g} m/s2 about the {foot} foot"
+        if value < math.inf
+        else f"no uplift about the {foot} foot at a rigid wall"
+        for foot, value in zip(("right", "left"), uplift_accelerations(settings, 1)[:, 0], strict=True)
+    ]
+    return Paragraph(f"{', '.join(values)}.", "Ground acceleration at uplift, with prestress and slip forces:")
 
 
 def _damage(response: RestrainedResponse) -> list[Paragraph]:

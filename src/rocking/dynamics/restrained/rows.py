@@ -10,7 +10,7 @@ from rocking.conventions import FEET, FloatArray
 from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane.fast_engine import RESULTS
-from rocking.dynamics.restrained.devices import parameters_of
+from rocking.dynamics.restrained.devices import blocked, devices_of, parameters_of
 from rocking.dynamics.restrained.engines import FAST, RestrainedHistory, run_rows
 from rocking.dynamics.restrained.many import AFTER
 from rocking.dynamics.restrained.pushover import pushover
@@ -90,11 +90,11 @@ def uplift_accelerations(settings: RestrainedStudySettings, count: int) -> Float
 
     Prestress and slip forces act before uplift. Stiffness and viscous forces act only after uplift.
     """
-    curves = [
-        pushover(settings.body, [0.0, side * _UPRIGHT], gravity=settings.gravity, linear=settings.linear)
-        for side in (1, -1)
-    ]
-    accelerations = np.array([-curves[0].balancing_acceleration[0], curves[1].balancing_acceleration[0]])
+    accelerations = np.full(2, np.inf)  # a rigid wall prevents the uplift of one side
+    for k, side in enumerate((1, -1)):
+        if side not in blocked(devices_of(settings.body, linear=settings.linear)):
+            curve = pushover(settings.body, [0.0, side * _UPRIGHT], gravity=settings.gravity, linear=settings.linear)
+            accelerations[k] = -side * curve.balancing_acceleration[0]
     if not np.all(accelerations > 0.0):
         raise InvalidValueError(
             "the body must stand without motion; the restraints lift it", parameter="restraints",
