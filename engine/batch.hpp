@@ -19,15 +19,15 @@ struct Range {
 // One ground motion within the common array of coefficients.
 struct Shake {
     std::int64_t first;     // index of the first coefficient of the motion
-    std::int64_t segments;  // number of stretches (intervals between samples)
-    // number of stretches of rest after the motion; two samples at one instant are the jump to zero
+    std::int64_t segments;  // number of segments (intervals between samples)
+    // number of segments of rest after the motion; two samples at one instant are the jump to zero
     std::int64_t still;
-    double step;            // duration of a stretch [s]
+    double step;            // duration of a segment [s]
     std::int64_t block;     // index of the first block of the motion in the ranges
     Range horizontal, vertical;  // ranges of the accelerations; they include zero [m/s2]
 };
 
-constexpr int kBlock = 32;  // number of stretches in a block; every block has one range of accelerations
+constexpr int kBlock = 32;  // number of segments in a block; every block has one range of accelerations
 
 // Smallest and largest accelerations of one direction [m/s2].
 struct Ranges {
@@ -36,7 +36,7 @@ struct Ranges {
 };
 
 // The motions of a batch. Degree 1: a list of samples, or of pairs (horizontal, vertical) if there is a vertical part.
-// Degree 7: a list of the coefficients of all stretches.
+// Degree 7: a list of the coefficients of all segments.
 struct Motions {
     const double* data;
     int degree;
@@ -94,14 +94,14 @@ struct Settings {
     bool to_the_ground;   // continue an overturning body until it lies on the ground
 };
 
-// Largest resultant acceleration of a motion, from both directions, over gravity.
+// Largest resultant acceleration of a motion, from both directions, divided by gravity.
 inline double strength_of(const Shake& shake, double over_gravity) {
     const double push = std::max(shake.horizontal.high, -shake.horizontal.low);
     const double lift = std::max(shake.vertical.high, -shake.vertical.low);
     return std::fabs(over_gravity) * (push + lift);
 }
 
-// Number of parts of a stretch. At accelerations of many g the ground moves the body faster than gravity.
+// Number of parts of a segment. At accelerations of many g the ground moves the body faster than gravity.
 inline double parts_of(const Shake& shake, double p, double over_gravity, double longest_step) {
     const double reach = p * shake.step * std::sqrt(std::max(1.0, 0.5 * strength_of(shake, over_gravity)));
     return std::max(1.0, std::ceil(reach / longest_step));  // Eq. 53

@@ -109,7 +109,7 @@ double Kernel<G, U, N, D, Z, L>::first_contact(double* c) const {
 }
 
 // An impact at a position within the step. settle() decides whether further events follow. after: angular
-// velocity after the impact [rad per stretch]; a stretch is the interval between two samples.
+// velocity after the impact [rad per stretch]; a segment is the interval between two samples.
 ROCKING_KERNEL
 bool Kernel<G, U, N, D, Z, L>::bounce(int i, double at, double speed) {
     Lane& lane = lanes[i];

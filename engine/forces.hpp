@@ -1,4 +1,4 @@
-// The contact force on a rocking body, over the weight m g, with q = m R^2 / I_o, e = (u' / p)^2 and M = u'' / p^2:
+// The contact force on a rocking body, divided by the weight m g, with q = m R^2 / I_o, e = (u' / p)^2 and M = u'' / p^2:
 //     N = 1 + a_z / g - q (M S + e C),   s H = s a_x / g - q (M C - e S).
 // N < 0 is a tensile contact force: the body loses contact. N and H are evaluated at the start of every step (every
 // sample, uplift and impact), just before every impact, and at the end of the motion. An overturning body is evaluated
@@ -25,7 +25,7 @@ void Kernel<G, U, N, D, Z, L>::note_forces(int base, Bits beats) {
     }
 }
 
-// Updates the extreme forces of one lane, for a speed per stretch, a push s a_x / g and a weight 1 + a_z / g.
+// Updates the extreme forces of one lane, for a speed per segment, a push s a_x / g and a weight 1 + a_z / g.
 ROCKING_KERNEL
 ROCKING_INLINE void Kernel<G, U, N, D, Z, L>::force_at(int i, double sine, double cosine, double speed, double push, double weight) {
     const double half = 0.5 * lever[i], square = kappa[i], spin = speed * speed;
@@ -47,7 +47,7 @@ ROCKING_INLINE void Kernel<G, U, N, D, Z, L>::touch(int i, double speed, double 
     force_at(i, sine_of[i], cosine_of[i], speed, push, weight);
 }
 
-// Push s a_x / g and weight 1 + a_z / g at a position within the stretch.
+// Push s a_x / g and weight 1 + a_z / g at a position within the segment.
 ROCKING_KERNEL
 ROCKING_INLINE void Kernel<G, U, N, D, Z, L>::ground_at(int i, double to, double& push, double& weight) const {
     const double* a = motions.data + idx[i];
@@ -57,7 +57,7 @@ ROCKING_INLINE void Kernel<G, U, N, D, Z, L>::ground_at(int i, double to, double
 }
 
 // Force when the body passes over its foot. For the last passage, later forces are ignored. to: position within the
-// stretch.
+// segment.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::pass_over(int i, double speed, double to) {
     double push, weight;

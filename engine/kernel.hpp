@@ -2,7 +2,7 @@
 //
 // A lane contains u = alpha - |theta| and its derivative, for the side of contact:
 //     u'' = p^2 { (1 + a_z / g) S + s (a_x / g) C },   S = sin u, C = cos u   (slender-linear: S = u, C = 1),
-// with s = +1 on the right foot. S and C are series too: S' = C u', C' = -S u'. One expansion covers one stretch
+// with s = +1 on the right foot. S and C are series too: S' = C u', C' = -S u'. One expansion covers one segment
 // of the motion or a part of it. Other events (impact, uplift, rest, point of no return, end) are computed lane by
 // lane, so that the loop over the steps has no branches.
 #pragma once
@@ -19,10 +19,10 @@
 namespace rocking {
 namespace ROCKING_ISA {
 
-constexpr double kWhole = 1.0 - 1e-13;  // fraction of a stretch; a step that ends after it ends with the stretch
+constexpr double kWhole = 1.0 - 1e-13;  // fraction of a segment; a step that ends after it ends with the segment
 constexpr double kMostError = 0.01;     // above this sum of error estimates there is no result [rad]
 constexpr double kMostSteps = 2e7;      // largest number of steps of a history
-constexpr double kLongest = 40.0;       // largest number of stretches of the flights before rest
+constexpr double kLongest = 40.0;       // largest number of segments of the flights before rest
 // bound on the effect of the heights of these flights on the logarithm of their gain
 constexpr double kHeights = 0.1;
 constexpr double kNothing = 1e-9;       // speeds / (p alpha) that count as zero
@@ -35,12 +35,12 @@ constexpr double kHalfPi = 1.57079632679489661923;
 ROCKING_KERNEL
 class Kernel {
     static constexpr int P = Pack::width, W = G * U * P;
-    static constexpr int stride = D == 1 ? (Z ? 2 : 1) : D + 1;  // number of values per sample or stretch
+    static constexpr int stride = D == 1 ? (Z ? 2 : 1) : D + 1;  // number of values per sample or segment
     static constexpr int Q = U > 1 ? 2 : 1;  // registers that are computed in parallel
     static constexpr int M = G > 1 ? 2 : 1;  // registers of lanes that land or reverse, computed in parallel
     using Bits = std::uint64_t;              // one bit per lane of a group
 
-    // state of the lanes; unused lanes rest on stretch zero. `peak` is a height that the body has reached: lower points
+    // state of the lanes; unused lanes rest on segment zero. `peak` is a height that the body has reached: lower points
     // are ignored. The highest point may be larger by the change within a step.
     alignas(64) double u[W], v[W], tau[W], sub[W], kappa[W], ca[W], cz[W], alpha[W], peak[W], err[W], fastest[W], gate[W];
     // Extreme contact forces: smallest normal force / m g, largest ratio of horizontal to normal force. For the foot of
@@ -54,7 +54,7 @@ class Kernel {
     // heights, `peak` and step lengths of these lanes
     alignas(64) double above[W + M * P] = {}, floors[W + M * P] = {}, span[W + M * P] = {};
 
-    struct alignas(64) Side {  // kappa, push: per stretch; calm: at lower speeds the body may come to rest
+    struct alignas(64) Side {  // kappa, push: per segment; calm: at lower speeds the body may come to rest
         double alpha, p, sine, cosine, r, kappa, push, calm;
     };
     struct Step {  // terms of the velocity, as a column of a table
@@ -83,7 +83,7 @@ class Kernel {
         Lane lane;
         bool still;                // true if it starts at rest
         double parts;
-        std::int64_t segments;     // number of stretches of its motion
+        std::int64_t segments;     // number of segments of its motion
         std::int64_t from;         // first sample that may cause uplift from rest
         std::int64_t row = -1;
     } ready;
@@ -147,7 +147,7 @@ class Kernel {
 
     // ---- one lane ---------------------------------------------------------------------------------------------------
 
-    // length of the next step / length of a stretch
+    // length of the next step / length of a segment
     double length(int i) const { return std::min(sub[i], 1.0 - tau[i]); }
     double stretch_of(int i) const { return static_cast<double>((idx[i] - lanes[i].first) / stride); }
     double now(int i, double fraction) const {

@@ -1,4 +1,4 @@
-// Largest ground accelerations in each block of stretches, and from each block to the end.
+// Largest ground accelerations in each block of segments, and from each block to the end.
 #pragma once
 #include <algorithm>
 
@@ -6,7 +6,7 @@
 
 namespace rocking {
 
-// Range of an acceleration within a stretch: of its samples, or of a polynomial's terms.
+// Range of an acceleration within a segment: of its samples, or of a polynomial's terms.
 inline void widen(Range& range, const double* a, int degree) {
     double low = a[0], high = a[0];
     for (int j = 1; degree > 1 && j <= degree; ++j) (a[j] < 0.0 ? low : high) += a[j];

@@ -5,8 +5,8 @@
 namespace rocking {
 namespace ROCKING_ISA {
 
-// Restoring moment of a side, over m g R: D = (1 + a_z / g) sin alpha + s (a_x / g) cos alpha,
-// as a polynomial of the time within a stretch.
+// Restoring moment of a side / (m g R): D = (1 + a_z / g) sin alpha + s (a_x / g) cos alpha,
+// as a polynomial of the time within a segment.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::holding(int i, int side, std::int64_t at, double* d) const {
     const Lane& lane = lanes[i];
@@ -26,7 +26,7 @@ void Kernel<G, U, N, D, Z, L>::holding(int i, int side, std::int64_t at, double*
     }
 }
 
-// First instant after `from` in the stretch at which the restoring moment of a side is not positive; 2 if there is
+// First instant after `from` in the segment at which the restoring moment of a side is not positive; 2 if there is
 // none.
 ROCKING_KERNEL
 double Kernel<G, U, N, D, Z, L>::release(int i, int side, std::int64_t at, double from) const {
@@ -52,7 +52,7 @@ double Kernel<G, U, N, D, Z, L>::release(int i, int side, std::int64_t at, doubl
     return zero > 1.0 ? 2.0 : from + zero * (1.0 - from);
 }
 
-// Restoring moments over the next stretches: smallest moments of both sides, total variation of the moments over the
+// Restoring moments over the next segments: smallest moments of both sides, total variation of the moments over the
 // smallest values, and derivative of the moments with respect to the rotation.
 ROCKING_KERNEL
 bool Kernel<G, U, N, D, Z, L>::window(int i, std::int64_t stretches, double most_varies, Window& w) const {

@@ -42,7 +42,7 @@ std::int64_t Kernel<G, U, N, D, Z, L>::block_at(int i) const {
     return lane.block + k / kBlock;
 }
 
-// For the remaining motion, over gravity: largest push of the ground against the rotation, and smallest weight.
+// For the remaining motion, divided by gravity: largest push of the ground against the rotation, and smallest weight.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::still_to_come(int i, double& back, double& weight) const {
     const std::int64_t block = block_at(i);
@@ -103,7 +103,7 @@ void Kernel<G, U, N, D, Z, L>::overturns(int i, double when) {
     finish(i, kOverturned, kGood);
 }
 
-// Energy over m g R, relative to rest. The form 2 sin^2(x / 2) of 1 - cos x avoids loss of digits.
+// Energy / (m g R), relative to rest. The form 2 sin^2(x / 2) of 1 - cos x avoids loss of digits.
 ROCKING_KERNEL
 double Kernel<G, U, N, D, Z, L>::energy(const Side& s, double u_, double speed) {
     const double kinetic = 0.5 * speed * speed / (s.p * s.p);

@@ -200,7 +200,7 @@ private:
         // a step that ends late may contain another switch: use a shorter step
         late_ = late > instant_ ? late_ + 1 : 0;
         if (late_ > 0 && late_ <= 3) return false;
-        // the shorter step ends before the switch, or only touches it; the number of repetitions is limited
+        // the shorter step ends before the contact changes, or at a contact force of zero without a change of contact; the number of repetitions is limited
         early_ = early ? early_ + 1 : 0;
         if (early && early_ <= 3) causes_.clear();
         look_at_nodes();

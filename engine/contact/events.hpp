@@ -151,8 +151,8 @@ inline double first_end(const Functions& f, double stretch, double tolerance, En
     return first;
 }
 
-// The mode after a state. Modes with more feet are tried first, and sticking before sliding. The first valid mode is
-// used.
+// Returns the contact mode after a state. The first valid mode is used: modes with more feet before modes with fewer
+// feet, and sticking before sliding.
 inline bool choose(const Base& b, const State& s, const Ground& g, double mu, Mode& mode, double& tolerance) {
     Mode tried[10];
     int count = 0;

@@ -30,7 +30,7 @@ static void expect(bool fine, const char* message) {
 
 class Library {
   public:
-    // Each row of `places`: first coefficient, number of stretches, number of terms, 1 if a vertical part follows.
+    // Each row of `places`: first coefficient, number of segments, number of terms, 1 if a vertical part follows.
     Library(Line<const double> data, Table<const std::int64_t> places, Line<const double> steps) : data_(data.data(), data.data() + data.size()) {
         expect(places.shape(1) == 4 && places.shape(0) == steps.size(), "tables of motions expected");
         const auto size = static_cast<std::int64_t>(data.size());

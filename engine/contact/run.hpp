@@ -1,4 +1,4 @@
-// One history: Taylor series from event to event, with steps that end at samples; bounds skip stretches at rest.
+// One history: Taylor series from event to event, with steps that end at samples; bounds skip segments at rest.
 #pragma once
 #include <vector>
 
@@ -14,9 +14,9 @@ struct Range {
     double low, high;
 };
 
-// A motion as polynomials on equal stretches, and the ranges of its accelerations over blocks of them.
+// A motion as polynomials on equal segments, and the ranges of its accelerations over blocks of them.
 struct Motion {
-    const double *push, *lift;  // coefficients, stretch after stretch; no lift without a vertical part
+    const double *push, *lift;  // coefficients, segment after segment; no lift without a vertical part
     std::int64_t count;
     int terms;
     double step;
@@ -85,7 +85,7 @@ class Run {
         return !(std::fabs(s_.rotation) > b_.alpha[side]) || (now() - row_.end) * b_.pace > kPatience;
     }
 
-    // Ground motion of the next time interval; the polynomial is shifted to the remaining part of the stretch.
+    // Ground motion of the next time interval; the polynomial is shifted to the remaining part of the segment.
     Ground ground(double unit) const {
         Ground g;
         g.unit = unit, g.lift[0] = set_.gravity, g.small = 0.1 * set_.tolerance;
@@ -337,7 +337,7 @@ class Run {
         return !(min_weight * right + low * h > 0.0 && min_weight * left - high * h > 0.0 && mu * min_weight - high > 0.0 && mu * min_weight + low > 0.0);  // Eq. 69
     }
 
-    // Skips stretches that cannot move the body; true if stretches were skipped.
+    // Skips segments that cannot move the body; true if segments were skipped.
     bool rest() {
         const std::int64_t from = stretch_;
         const std::int64_t last = std::min<std::int64_t>(m_.count, static_cast<std::int64_t>(row_.end / m_.step + 1e-9));

@@ -91,8 +91,8 @@ inline void normalise(double* q) {
 }
 
 struct Motion {
-    const double* times = nullptr;  // end times of the stretches
-    const double* rows = nullptr;   // accelerations by stretch, power and axis
+    const double* times = nullptr;  // end times of the segments
+    const double* rows = nullptr;   // accelerations by segment, power and axis
     std::int64_t count = 0;
     int degree = 0;
 };
@@ -137,7 +137,7 @@ struct Ground {
         field.degree = n;
     }
 
-    // The field over several linear stretches, as a cubic with the moments of the motion. Up to the fourth order, the
+    // The field over several linear segments, as a cubic with the moments of the motion. Up to the fourth order, the
     // end of a step depends on these moments only. Returns the largest distance from the samples in the step.
     double across(std::int64_t stretch, double start, double span, Field& result) const {
         const double end = start + span;

@@ -311,7 +311,7 @@ inline bool turned(const Points& free, const Numbers& soft, Rubbing& rub) {
     const int n = static_cast<int>(free.size());
     Flat from[kCorners];
     double along[kCorners], r[kCorners], other[kCorners], table[kCorners][kCorners + 1], size = 0.0;
-    // accelerations perpendicular to the directions, over the largest acceleration that friction causes
+    // accelerations perpendicular to the directions, divided by the largest acceleration that friction causes
     const auto across = [&](double* r) {
         if (!rub.act()) return false;
         size = 0.0;
@@ -363,7 +363,7 @@ inline bool turned(const Points& free, const Numbers& soft, Rubbing& rub) {
 inline bool turned_whole(const Problem& p, const Points& free, double still, Solution& s) {
     const Points& members = s.contact.members;
     const Vecs begun = s.directions;
-    // directions, and the motion of the body for these directions; lengths are over the size of the body
+    // directions, and the motion of the body for these directions; lengths are divided by the size of the body
     const auto follow = [&](const double* u) {
         for (int k : free) {
             const Vec r = p.body->points[members[k]], turn = u[2] / p.body->size * cross(p.axes.c, r);

@@ -68,7 +68,7 @@ class Library {
 
     void add_nobody() { bodies_.push_back(std::make_unique<Body>()); }
 
-    // rows: accelerations by stretch, then by power and axis.
+    // rows: accelerations by segment, then by power and axis.
     void add_motion(Line<const double> times, Table<const double> rows) {
         const int powers = static_cast<int>(rows.shape(1)) / 3;
         expect(times.size() == rows.shape(0) + 1 && rows.shape(1) % 3 == 0 && powers >= 1 && powers <= kPowers, "tables of a motion expected");

@@ -31,10 +31,10 @@ struct Yields {
     int slot(int i) const { return static_cast<int>(std::find(at.begin(), at.end(), i) - at.begin()); }
 };
 
-// Forces at up to three vertices of the table.
+// Forces at up to three vertices in contact.
 struct Trial {
     static constexpr int kMost = 3;
-    int n = 0, at[kMost];    // indices of the members in the table
+    int n = 0, at[kMost];    // indices of these vertices in the table of effects
     Vec force[kMost];
     Flat ways[kMost];        // directions of the sliding members; zero for the others
 };
@@ -86,7 +86,7 @@ struct Hinge {
         angular = alpha * along + beta, linear = -1.0 * (cross(angular, first) + centripetal);
     }
 
-    // Total force, and the force at the second end. The first end carries the complete part along the edge.
+    // Total force, and the force at the second end. The force component along the edge acts at the first end only.
     std::pair<Vec, Vec> forces(const Body& b, Vec gyro, Vec linear, Vec angular, Vec before) const {
         const Vec force = b.mass * (linear - before), moment = b.inertia * angular + gyro - cross(first, force);
         return {force, 1.0 / length * cross(moment, along)};
@@ -247,7 +247,7 @@ class Sliding {
         return rate;
     }
 
-    // Residuals perpendicular to the free directions, over the largest effect of friction, and their derivatives.
+    // Residuals perpendicular to the free directions, divided by the largest effect of friction, and their derivatives.
     template <int m>
     double across(double (&r)[3], double (&along)[3], double (&slopes)[kCorners][kCorners + 1]) const {
         double size = 0.0;

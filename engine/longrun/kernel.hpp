@@ -15,7 +15,7 @@ struct SpeedLaw {
     int points;
 };
 struct Sine {
-    double amplitude, omega, phase;  // ground acceleration over g: amplitude, circular frequency, phase
+    double amplitude, omega, phase;  // ground acceleration / g: amplitude, circular frequency, phase
 };
 enum class Parameter : int { none, amplitude, omega, restitution, alpha };
 

@@ -89,7 +89,7 @@ struct Lane {
     }
     double sign() const { return s == 0 ? 1.0 : -1.0; }
 
-    // Ground acceleration over g and its rate.
+    // Ground acceleration / g and its rate.
     void ground(double& acceleration, double& rate) const {
         acceleration = rate = 0.0;
         for (int i = 0; i < set.sines; ++i) {

@@ -63,10 +63,10 @@ struct Feels {
     }
 };
 
-// Largest magnitude of the cubic with given values and slopes at both ends of a stretch; the start value is excluded.
+// Largest magnitude of the cubic with given values and slopes at both ends of a segment; the start value is excluded.
 static inline double cubic_peak(double y, double d, double z, double e, double best) {
     best = std::max(best, std::abs(z));
-    // a cubic exceeds its end values by at most 4/27 of its slopes, so most stretches need no closer examination
+    // a cubic exceeds its end values by at most 4/27 of its slopes, so most segments need no closer examination
     if (std::max(std::abs(y), std::abs(z)) + 4.0 / 27.0 * (std::abs(d) + std::abs(e)) <= best) return best;
     const double bend = d + e - 2.0 * (z - y), turn = 3.0 * (z - y) - 2.0 * d - e;
     const double inside = turn * turn - 3.0 * bend * d;

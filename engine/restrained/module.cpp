@@ -28,7 +28,7 @@ static void expect(bool fine, const char* message) {
 
 class Library {
   public:
-    // Rows of `places`: first coefficient, number of stretches, number of terms, 1 if a vertical part follows.
+    // Rows of `places`: first coefficient, number of segments, number of terms, 1 if a vertical part follows.
     Library(Line<const double> data, Table<const std::int64_t> places, Line<const double> steps) : data_(data.data(), data.data() + data.size()) {
         expect(places.shape(1) == 4 && places.shape(0) == steps.size(), "tables of motions expected");
         const auto size = static_cast<std::int64_t>(data.size());
@@ -40,7 +40,7 @@ class Library {
         }
     }
 
-    // Rows of `choices`: motion, number of stretches, first restraint, number of restraints.
+    // Rows of `choices`: motion, number of segments, first restraint, number of restraints.
     void run(Table<const double> numbers, Table<const double> restraints, Table<const std::int64_t> choices, Table<double> results, Table<std::int64_t> counts,
              Table<double> of_restraints, double gravity, double rest_speed, double tolerance, std::int64_t most_events, bool linear, int threads) const {
         const auto rows = static_cast<std::int64_t>(numbers.shape(0));

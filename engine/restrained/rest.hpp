@@ -8,7 +8,7 @@ namespace rocking::restrained {
 
 constexpr double kNothing = 1e-9, kLongest = 40.0, kHeights = 0.1;
 
-// A ground motion as polynomials on equal stretches.
+// A ground motion as polynomials on equal segments.
 struct Motion {
     const double *push, *lift;  // lift is null without a vertical part
     std::int64_t count;
@@ -17,7 +17,7 @@ struct Motion {
 
     double value_of(const double* c, std::int64_t stretch, double tau) const { return value_at(c + stretch * terms, terms, tau); }
 
-    // The polynomial over a part of a stretch, times a factor, as a function of y: time = tau + width y.
+    // The polynomial over a part of a segment, times a factor, as a function of y: time = tau + width y.
     void shifted(const double* from, std::int64_t stretch, double tau, double width, double factor, double* c) const {
         const double* a = from + stretch * terms;
         for (int k = 0; k < terms; ++k) c[k] = factor * a[k];
@@ -41,7 +41,7 @@ struct Extent {
     double low = 0.0, high = 0.0, variation = 0.0;
 };
 
-// Restoring moments D = (1 + a_z / g) sin alpha + s (a_x / g) cos alpha + moments of restraints, over m g R.
+// Restoring moments D = (1 + a_z / g) sin alpha + s (a_x / g) cos alpha + moments of restraints / (m g R).
 struct Holding {
     double more[2], sine[2], cosine[2];
 
@@ -57,7 +57,7 @@ struct Holding {
         polynomial(side, m, stretch, scale, d);
         return value_at(d, m.terms, tau);
     }
-    // First instant of a stretch at which the restoring moment of a side is not positive; 2 if there is none.
+    // First instant of a segment at which the restoring moment of a side is not positive; 2 if there is none.
     double release(const Body&, int side, const Motion& m, std::int64_t stretch, double from, double scale) const {
         double d[8];
         polynomial(side, m, stretch, scale, d);
@@ -79,7 +79,7 @@ struct Holding {
     }
 };
 
-// Minimum, maximum and variation of a motion over several stretches, from tau in the first stretch; exact for linear
+// Minimum, maximum and variation of a motion over several segments, from tau in the first segment; exact for linear
 // motions.
 inline Extent extent_of(const Motion& m, const double* c, std::int64_t first, std::int64_t stretches, double tau, double scale) {
     Extent e;

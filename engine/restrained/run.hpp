@@ -79,7 +79,7 @@ class Run {
         else head(rate_ > 0.0 ? 1 : -1);
     }
 
-    // Ground motion over the part of the stretch after tau, over g: push and weight.
+    // Ground motion over the part of the segment after tau, divided by g: push and weight.
     int ground(double width, double* push, double* weight) const {
         for (int k = 0; k < m_.terms; ++k) push[k] = weight[k] = 0.0;
         if (stretch_ < std::min(m_.count, count_)) {

@@ -23,7 +23,7 @@ struct Pivot {
     // contributions to the angular acceleration: of the field, and of products of velocities
     Four torque[3], gyro[6];
     int watched[2] = {-1, -1};            // vertices whose gaps may close first
-    // gaps: coefficients of both gaps, of the height of the centre and of the cosine; ends: of the ends of an edge
+    // gaps: coefficients of both gaps, of the height of the centre of mass and of the cosine; ends: of the ends of an edge
     Four gaps[3] = {}, ends[3] = {};
     double along = 0.0;                   // component of the arm along the edge
     Vec level, lever;                     // for an edge: part of the arm perpendicular to it, and axis x arm

@@ -30,7 +30,7 @@ inline Vec projected(const Body& body, const State& s, const Pivot& onto) {
 // Impact after which the particles keep only their horizontal velocities.
 inline Vec level_only(const Body& body, const State& s, const Pivot& onto) {
     const double half = 0.5 * (body.inertia.a.x + body.inertia.b.y + body.inertia.c.z);
-    const Mat second = diagonal(half) - body.inertia;  // integral of x x^T about the centre
+    const Mat second = diagonal(half) - body.inertia;  // integral of x x^T about the centre of mass
     const Vec speed = cross(s.velocity, body.centre - s.pivot), level = speed - dot(s.up, speed) * s.up;
     const Vec momentum = body.inertia * s.velocity + cross(s.up, second * cross(s.up, s.velocity));
     return with_momentum(onto, momentum + body.mass * cross(onto.arm, level));  // Eq. 102

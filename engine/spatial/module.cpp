@@ -1,4 +1,4 @@
-// Interface to Python: bodies and motions are passed once, then tables of histories. Threads take rows in turn.
+// Interface to Python: bodies and motions are passed once, then tables of histories. Each thread computes the next row that is not started.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>

@@ -6,7 +6,7 @@
 namespace rocking::spatial {
 namespace ROCKING_ISA {
 
-// A step with series: coefficients of the gaps of two vertices, of the height of the centre, and of the cosine of the
+// A step with series: coefficients of the gaps of two vertices, of the height of the centre of mass, and of the cosine of the
 // tilt.
 struct Step {
     double length = 0.0;

@@ -6,7 +6,7 @@
 namespace rocking::spatial {
 namespace ROCKING_ISA {
 
-// Accelerations as polynomials: data[stretch][power][axis]; the unit of time is the stretch.
+// Accelerations as polynomials: data[stretch][power][axis]; the unit of time is the segment.
 struct Motion {
     const double *times = nullptr, *data = nullptr;
     std::int64_t count = 0;
@@ -42,7 +42,7 @@ public:
         }
     }
 
-    // First zero, after time tau of a stretch, of functions that are positive at rest; stretch -1 if there is no zero.
+    // First zero, after time tau of a segment, of functions that are positive at rest; segment -1 if there is no zero.
     Uplift next(std::int64_t stretch, double tau) const {
         for (; stretch < motion_.count; ++stretch, tau = 0.0) {
             if (tau == 0.0 && surely_held(stretch)) continue;
@@ -119,7 +119,7 @@ private:
         if (least < -same) return uplift;
         for (int e = 0; e < rows_; ++e) {
             const double at = c[e][0] > 0.0 ? first_fall(c[e], order_) : (falls_at_once(c[e], order_) ? 0.0 : kNone);
-            if (at < kWhole) first = lesser(first, at);  // a zero at the end belongs to the next stretch
+            if (at < kWhole) first = lesser(first, at);  // a zero at the end belongs to the next segment
         }
         if (first == kFar) return {};
         for (int e = 0; e < rows_ && !body_.round; ++e) {

@@ -100,7 +100,7 @@ private:
     Mat inertia_[kMostOrder + 1], solve_;
 };
 
-// Quantities of the series of a rolling step: height of the centre, Z . C + b sin(tilt), and cosine of the tilt.
+// Quantities of the series of a rolling step: height of the centre of mass, Z . C + b sin(tilt), and cosine of the tilt.
 inline void read_rolling(const Body& body, Step& step) {
     double root[kMostOrder + 1];
     for (int k = 0; k <= step.s.order; ++k) {

@@ -27,7 +27,7 @@ struct Numbers {
     const double* positions;          // impulse positions k of landings of the complete base: intervals of all bodies and models
     std::int64_t body_count, vertex_count, position_count;
     int degree;
-    // by motion: index of its first time, index of its first acceleration, number of stretches
+    // by motion: index of its first time, index of its first acceleration, number of segments
     const std::int64_t* places;
     const double *times, *accelerations;
     std::int64_t motion_count, time_count, acceleration_count;
