@@ -1,7 +1,7 @@
 """Interrupt and resume a campaign
 ===============================
 
-A long study is interrupted and resumed. Finished chunks are safe, and the final files are the same bytes as without
+A long study is interrupted and resumed. Finished chunks are safe, and the final files are the same as without
 the interruption. For operators of large studies.
 """
 

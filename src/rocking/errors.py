@@ -127,7 +127,7 @@ class RockingError(Exception):
         for location in reversed(places):
             sentence = Message("{location}: {fault}", {"location": str(location), "fault": sentence})
         if self.hint:
-            sentence = Message("{fault}; {hint}", {"fault": sentence, "hint": as_message(self.hint)})
+            sentence = Message("{fault}; {hint}", {"fault": sentence.clause(), "hint": as_message(self.hint)})
         return Message("{fault} (and {count} more)", {"fault": sentence, "count": self.more}) if self.more else sentence
 
     def data(self) -> dict[str, Any]:
@@ -201,7 +201,9 @@ class RockingError(Exception):
         hint : str
             Remedy.
         """
-        self.hint = Message("{first}; {second}", {"first": self.hint, "second": hint}) if self.hint else hint
+        if self.hint:
+            hint = Message("{first}; {second}", {"first": as_message(self.hint).clause(), "second": hint})
+        self.hint = hint
 
     def at(self, name: str, line: int = 0) -> Self:
         """Add a file as the outermost location of the error.

@@ -19,7 +19,7 @@ class Parameter(Fact):
     """
 
     path: str
-    shown: str  # end of the path, shown in the sentence
+    shown: str  # last part of the path, for the sentence
 
     @property
     def name(self) -> str:
@@ -199,6 +199,10 @@ class Message(str):
         """Return the sentence. `spelling` converts its facts to text."""
         return _filled(self.text, self.facts, self.many, spelling)
 
+    def clause(self) -> "Clause":
+        """Return the message without its final full stop, for the beginning of a longer sentence."""
+        return Clause(self.text, self.facts, self.many, self.context)
+
     def of(self, facts: Mapping[str, Any]) -> "Message":
         """Return the message with other facts."""
         return Message(self.text, facts, self.many, self.context)
@@ -215,6 +219,23 @@ class Message(str):
         for sentence in others:
             first = cls("{first} {second}", {"first": first, "second": sentence})
         return first
+
+
+class Clause(Message):
+    """A message without its final full stop.
+
+    >>> Message("Unknown unit {unit}.", {"unit": "kN"}).clause()
+    'Unknown unit kN'
+    """
+
+    def __new__(cls, text: str, facts: Mapping[str, Any] | None = None, many: str = "", context: str = "") -> Self:
+        """Return a clause, with the arguments of `Message`."""
+        clause = str.__new__(cls, _filled(text, facts or {}, many, str).removesuffix("."))
+        clause.text, clause.facts, clause.many, clause.context = text, facts or {}, many, context
+        return clause
+
+    def spelt(self, spelling: Spelling) -> str:
+        return super().spelt(spelling).removesuffix(".")
 
 
 def listed(texts: Iterable[str]) -> str:

@@ -55,7 +55,7 @@ MOST_CUT = 0.05, 0.999
 
 
 def of_body(centre_height: float, slenderness: float, densities: Iterable[float]) -> tuple[str, ...]:
-    """Return the warnings about a body: height of its centre [m], slenderness, densities of its parts [kg/m3]."""
+    """Return warnings about a body: height of the centre of mass [m], slenderness, densities of the parts [kg/m3]."""
     low, high = CENTRE_HEIGHTS
     doubts = []
     if centre_height > high:

@@ -539,7 +539,7 @@ _RESPONSE = (
     ),
     Quantity("growth_rate", "1/s", "logarithm of the largest growth of a difference since the start, over its time"),
     Quantity("growth_time", "s", "time of the largest growth of a difference since the start"),
-    Quantity("relative_change", "1", "relative change of the peak rotation over that of the motion"),
+    Quantity("relative_change", "1", "relative change of the peak rotation / relative change of the motion"),
     Quantity(
         "error_estimate", "rad", "largest change of the rotation with half the time step; infinite if the outcome "
         "changes", label="numerical error", digits=".1e",
@@ -686,7 +686,7 @@ _LONG_RUN = (
     Quantity("orbits_sticking", "1", "number of orbits with rests", label="with rests"),
     Quantity("orbits_overturned", "1", "number of orbits that overturn", label="overturned"),
     Quantity("final_state", "1", "overturned, small (slow impact), settled (still rocking), failed", _FINAL_STATES),
-    Quantity("is_uncertain", "1", "1 if the final state changes with the step error, else 0"),
+    Quantity("is_uncertain", "1", "1 if the final state depends on the tolerance of the time integration, else 0"),
     Quantity("stability", "1", "fraction of the initial states that do not overturn", digits=".4f"),
     *(
         Quantity(f"cells_{name}", "1", f"number of initial states: {name}", label=name)
@@ -775,3 +775,5 @@ TIMES = tuple(entry.name for entry in _HISTORY if entry.unit == "s")
 """Names of the times of a history. They scale with the time of the motion."""
 HISTORY = tuple(entry.name for entry in _HISTORY if not entry.name.startswith("twin"))
 """Quantities of every history of a study of plane bodies, in the order of tables."""
+WITH_RESTRAINTS = ("residual_rotation", "yielded_restraints", "broken_restraints")
+"""Additional quantities of every history of a body with restraints."""

@@ -116,6 +116,26 @@ def test_the_smallest_overturning_acceleration_separates_single_histories():
     assert lowest.minimum > free.minimum
 
 
+@pytest.mark.verifies("computed anew", "the same histories, one by one", within="exact damage, 1e-9 rad")
+def test_a_map_with_restraints_contains_residual_rotation_and_damage():
+    """Residual rotation and the restraints that yielded or broke, of a body without symmetry."""
+    levels, coefficients = [2.0, 6.0, 14.0], [0.5, 0.8]
+    cells = rk.overturning_map(TIED, PULSES[2], ("pga", levels), ("restitution", coefficients))
+    for i, coefficient in enumerate(coefficients):
+        for j, level in enumerate(levels):
+            response = rk.simulate(TIED, PULSES[2].scaled(level), coefficient)
+            cell, rows = cells.isel(restitution=i, pga=j), response.restraints.records
+            if response.outcome is rk.Outcome.OVERTURNED:
+                continue
+            assert float(cell["residual_rotation"]) == pytest.approx(response.residual_rotation, abs=1e-9)
+            assert int(cell["yielded_restraints"]) == sum((row["yield_count"] > 0) << k for k, row in enumerate(rows))
+            assert int(cell["broken_restraints"]) == sum(bool(row["is_broken"]) << k for k, row in enumerate(rows))
+    assert len(np.unique(cells["yielded_restraints"])) > 1  # damage differs between the cells
+    assert cells["residual_rotation"].attrs["units"] == "rad"
+    free = rk.overturning_map(WALL, PULSES[2], ("pga", levels), ("restitution", coefficients))
+    assert not {"residual_rotation", "yielded_restraints", "broken_restraints"} & set(free)
+
+
 @pytest.mark.verifies("damage")
 def test_what_a_study_with_restraints_refuses():
     """Other bodies, dimensions, stretched time and unknown states are refused in one sentence."""

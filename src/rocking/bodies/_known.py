@@ -12,7 +12,7 @@ from rocking.conventions import Assumed, FloatArray
 from rocking.errors import GeometryError, InvalidValueError
 from rocking.messages import Amount, Message, Range
 
-_SLACK = 1e-6  # tolerance for rounding: relative excess of a moment over the largest possible value
+_SLACK = 1e-6  # tolerance for rounding: (moment - largest possible moment) / largest possible moment
 
 
 Point = tuple[float, float]
@@ -27,7 +27,7 @@ class Known:
 
     @classmethod
     def of(cls, centre: Any, moment_of_inertia: Any, origin: Point = (0.0, 0.0)) -> "Known | None":
-        """Return the checked values, or None if no value is given. The centre is in the user's frame [m]."""
+        """Return the checked values, or None if no value is given. The centre of mass is in the user's frame [m]."""
         if centre is None and moment_of_inertia is None:
             return None
         if moment_of_inertia is not None:
@@ -42,7 +42,7 @@ class Known:
         return cls((x - origin[0], y - origin[1]), moment_of_inertia)
 
     def arguments(self, origin: Point = (0.0, 0.0)) -> dict[str, Any]:
-        """Return the known values by argument name. The centre is in the user's frame [m]."""
+        """Return the known values by argument name. The centre of mass is in the user's frame [m]."""
         centre = None if self.centre is None else (self.centre[0] + origin[0], self.centre[1] + origin[1])
         named = {"centre": centre, "moment_of_inertia": self.moment_of_inertia}
         return {name: value for name, value in named.items() if value is not None}
@@ -50,7 +50,7 @@ class Known:
     def moments(self, homogeneous: PlaneMoments, vertices: FloatArray, origin: Point = (0.0, 0.0)) -> PlaneMoments:
         """Return the moments of the body from the homogeneous moments and the vertices in the local frame [m]."""
         # An unknown moment of inertia is a fraction of the largest possible moment. The homogeneous body gives this
-        # fraction. For a rectangle, the result is the moment of four homogeneous quarters about the centre. The
+        # fraction. For a rectangle, the result is the moment of four homogeneous quarters about the centre of mass. The
         # moments xx and yy are computed in the same way.
         x, y = self.centre or (homogeneous.x, homogeneous.y)
         (left, low), (right, high) = vertices.min(axis=0).tolist(), vertices.max(axis=0).tolist()

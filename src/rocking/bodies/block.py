@@ -208,7 +208,7 @@ class Block(Body):
 
     @property
     def local_moments(self) -> PlaneMoments:
-        """Mass, centre and central second moments, in closed form."""
+        """Mass, centre of mass and central second moments, in closed form."""
         mass = self.density * self.width * self.height * self.depth
         homogeneous = PlaneMoments(
             mass, self.half_width, self.half_height, mass * self.width**2 / 12.0, mass * self.height**2 / 12.0

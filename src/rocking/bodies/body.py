@@ -112,7 +112,7 @@ class Body(ABC):
     @property
     @abstractmethod
     def local_moments(self) -> PlaneMoments:
-        """Mass, centre and central second moments in the local frame."""
+        """Mass, centre of mass and central second moments in the local frame."""
 
     @property
     @abstractmethod
@@ -294,7 +294,7 @@ class Body(ABC):
         Returns
         -------
         Answer
-            Mass, centre, feet, moment of inertia, assumptions, doubts, and the geometry of each side.
+            Mass, centre of mass, feet, moment of inertia, assumptions, doubts, and the geometry of each side.
         """
         names = (
             "slenderness_ratio", "slenderness_angle", "semi_diagonal", "frequency_parameter", "uplift_acceleration",

@@ -34,7 +34,7 @@ class MassPoints(Body):
     Raises
     ------
     GeometryError
-        If a point is not finite or below the ground, or the centre is not between the feet.
+        If a point is not finite or below the ground, or the centre of mass is not between the feet.
     InvalidValueError
         If a mass is not a finite number above zero.
 
@@ -77,7 +77,7 @@ class MassPoints(Body):
 
     @cached_property
     def local_moments(self) -> PlaneMoments:
-        """Mass, centre and central second moments, as sums over the points."""
+        """Mass, centre of mass and central second moments, as sums over the points."""
         mass = float(self.masses.sum())
         x, y = (self.masses[:, None] * self.points).sum(axis=0) / mass
         xx, yy = (self.masses[:, None] * (self.points - (x, y)) ** 2).sum(axis=0)

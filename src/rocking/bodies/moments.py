@@ -1,4 +1,4 @@
-"""Mass, centre and second moments in 2D and 3D, and their sums over parts."""
+"""Mass, centre of mass and second moments in 2D and 3D, and their sums over parts."""
 
 import math
 from collections.abc import Iterable
@@ -15,14 +15,14 @@ class PlaneMoments:
     """Zeroth, first and central second moments of a 2D mass distribution."""
 
     mass: float  # integral of dm [kg], or of dA [m2] for a bare ring; negative for a hole
-    x: float  # x, y: coordinates of the centre [m]
+    x: float  # x, y: coordinates of the centre of mass [m]
     y: float
     xx: float  # xx, yy: integrals of (x - centre)**2 dm and of (y - centre)**2 dm [kg m2]
     yy: float
 
     @property
     def polar(self) -> float:
-        """Polar moment about the centre [kg m2]."""
+        """Polar moment about the centre of mass [kg m2]."""
         return self.xx + self.yy
 
     def times(self, weight: float) -> "PlaneMoments":
@@ -57,9 +57,9 @@ def quarters(
     moments: PlaneMoments, box: tuple[float, float, float, float]
 ) -> tuple[list[FloatArray], FloatArray, FloatArray]:
     """Return a mass distribution within a box with the given moments, as in `Body.assumed`."""
-    # Returns rectangles, counter-clockwise from the centre [m], the corners of the box, shape (4, 2) [m], and the
-    # masses in rectangles and corners, shape (2, 4) [kg]. Masses in the complete quarters have a third of the moment
-    # of the same masses in the corners.
+    # Returns rectangles, counter-clockwise from the centre of mass [m], the corners of the box, shape (4, 2) [m], and
+    # the masses in rectangles and corners, shape (2, 4) [kg]. Masses in the complete quarters have a third of the
+    # moment of the same masses in the corners.
     centre = np.array([moments.x, moments.y])
     left, low, right, high = box
     corners = np.array([[left, low], [right, low], [right, high], [left, high]])
@@ -83,7 +83,7 @@ class SolidMoments:
 
     @property
     def inertia(self) -> FloatArray:
-        """Inertia tensor about the centre, ``tr(J) 1 - J`` with J the second moments [kg m2]."""
+        """Inertia tensor about the centre of mass, ``tr(J) 1 - J`` with J the second moments [kg m2]."""
         return _inertia(self.second)
 
     def times(self, weight: float) -> "SolidMoments":

@@ -255,7 +255,7 @@ class Section(Body):
 
     @cached_property
     def local_moments(self) -> PlaneMoments:
-        """Mass, centre and central second moments in the local frame, known or from the polygons."""
+        """Mass, centre of mass and central second moments in the local frame, known or from the polygons."""
         moments = combined_plane(
             ring_moments(ring).times(region.density * self._depth) for region in self.regions for ring in region.rings
         )

@@ -155,7 +155,7 @@ class WorkerTask:
             )  # fmt: skip
 
     def compute(self, chunk: Chunk, threads: int | None = 1, stop: Stop = lambda: False) -> bytes | None:
-        """Return the shard of a chunk, or of its first piece of about a second; None after a stop."""
+        """Return the result file (shard) of a chunk, or of its first second of computing; None after a stop."""
         results = empty_results(chunk.last - chunk.first, self.histories.columns)
         last = self.fill(results, chunk, threads, stop)
         return None if last is None else shard.pack(chunk.piece(chunk.first, last), results)

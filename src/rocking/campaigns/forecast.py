@@ -34,7 +34,7 @@ class Forecast:
 
     histories: int  # number of remaining histories
     chunks: int
-    work: Estimate  # computing time of one core, from a distributed sample
+    work: Estimate  # computing time on one core, from a sample of the histories
     needed: int  # required disk space [bytes]
     free: int
 

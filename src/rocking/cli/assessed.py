@@ -129,7 +129,7 @@ def model_cells(rows: list[dict[str, Any]]) -> tuple[str, ...]:
 
 
 def measures_of(result: "BodyAssessment") -> Iterable[str]:
-    """Return the retrofit measures in two lines; in sentences for a 3D body, a required margin or a missing search."""
+    """Return two lines of retrofit measures, or sentences (3D body, required margin, or measures not computed)."""
     remedy = result.remedies
     wider, lower = remedy.wider, remedy.lower
     is_short = remedy.needed and remedy.isolation and wider.length_no_overturning > 0.0

@@ -118,7 +118,8 @@ def export(
     crossing_curves: Annotated[
         str | None,
         typer.Option(
-            help="Fragility curves that cross: keep-uplift, common-dispersion or refuse. [default: as in the job]"
+            help="Treatment of crossing fragility curves: keep-uplift, common-dispersion or refuse. "
+            "[default: as in the job]"
         ),
     ] = None,
     inputs: Inputs = None,

@@ -43,7 +43,11 @@ def equilibria(
     density: options.Density = None,
     units: options.Units = None,
     min_barrier: Annotated[
-        str | None, typer.Option(help=r"Ignore poses with a lower energy barrier, such as 2mm \[m, or --units].")
+        str | None,
+        typer.Option(
+            help=r"Smallest energy barrier of a listed pose, as a rise of the centre of mass such as 2mm \[m, "
+            r"or --units]."
+        ),
     ] = None,
     sets: options.Set = None,
     output: Annotated[list[str] | None, options.output(EXPORTS)] = None,

@@ -13,6 +13,7 @@ from rocking.cli.compared import model_facts, overturned, show_models, with_mode
 from rocking.cli.exports import DATASET, Exports
 from rocking.cli.page import Page, bar, deliver
 from rocking.cli.spelling import UsageError
+from rocking.messages import Message
 from rocking.outcome import mode_shares
 from rocking.quantities import Quantity
 from rocking.spec.questions.map import MapTable
@@ -37,6 +38,7 @@ _CHANGES = {
     "only_first": Quantity("only_first", "1", "cells", label="overturning only with first"),
 }
 _FLIPS = ("first", "second", "count", "fraction", "only_second", "only_first")
+_VARIED = Message("The coefficient of restitution is varied along an axis of the map.")
 _LAST = 3  # largest number of impacts with its own row; JSON has all numbers
 
 _AXIS = ": NAME=FIRST:LAST:COUNT or NAME=A,B,C, such as pga=0.1g:1g:50"
@@ -154,6 +156,12 @@ class MapAnswer:
         return self.arrays.axes
 
     @property
+    def restitution(self) -> str:
+        """Label of the first restitution model, or `varied` if the restitution is an axis."""
+        is_varied = "restitution" in {axis.name for axis in self.axes}
+        return "varied" if is_varied else str(self.arrays.attributes["restitution"])
+
+    @property
     def islands(self) -> Any:
         from rocking.studies.islands import safe_islands
 
@@ -205,7 +213,7 @@ class MapAnswer:
         axis_of = dict(zip("xy", self.axes, strict=True))
         return Answer({
             **subject_values(problem),
-            "restitution": arrays.attributes["restitution"],
+            "restitution": self.restitution,
             "engine": arrays.attributes["engine"],
             "gravity": problem.settings.gravity,
             "linear": problem.settings.linear,
@@ -226,9 +234,9 @@ class MapAnswer:
             "contact": arrays.attributes["contact"],
             "sensitivity": self._sensitivity(),
             **model_facts(
-                arrays.attributes["restitution"], self.others, lambda maps: overturned(maps[0]["mode"]),
-                problem.bodies[0],
+                self.restitution, self.others, lambda maps: overturned(maps[0]["mode"]), problem.bodies[0]
             ),
+            **({"headline": _VARIED} if self.restitution == "varied" else {}),
         }, {which: Quantity(which, axis.unit, axis.meaning, label=axis.name) for which, axis in axis_of.items()}
         | _RESTITUTIONS)  # fmt: skip
 

@@ -178,9 +178,8 @@ class ResponseAnswer:
         page.facts(_sources(self._components.values()) if self.details else (), 8)
         page.warn(answer["body"].values.get("repairs", ()))
         if not self.details:
-            page.line(
-                "Impacts, energy, sources: --details    Files: -o rows.csv, -o animation.html, -o report=report.pdf"
-            )
+            film = "picture.png" if "restraints" in answer else "animation.html"  # restraints have no animation
+            page.line(f"Impacts, energy, sources: --details    Files: -o rows.csv, -o {film}, -o report=report.pdf")
 
     def _show_tables(self, page: Page, answer: Answer) -> None:
         for name, (title, columns) in _TABLES.items() if self.details else ():

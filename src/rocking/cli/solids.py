@@ -57,7 +57,7 @@ class SolidAnswer:
 
     @property
     def left_out(self) -> int:
-        """Number of edges that are not computed, which have the largest slenderness angles."""
+        """Number of edges without result: only edges with smaller slenderness angles are computed."""
         base = self.solid.base
         return len(base.vertices) - len(self.edges) if isinstance(base, SupportPolygon) else 0
 

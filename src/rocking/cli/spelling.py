@@ -35,7 +35,7 @@ def spelled(message: Message | RockingError | str) -> str:
     if context is None:
         return str(message)
     if isinstance(message, RockingError):
-        return message.spelt(spelling(context), within=False).replace(".; ", "; ")
+        return message.spelt(spelling(context), within=False)
     return message.spelt(spelling(context)) if isinstance(message, Message) else message
 
 

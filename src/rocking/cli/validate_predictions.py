@@ -32,7 +32,7 @@ def validate_predictions(
         Path,
         typer.Argument(
             help="Folder with a body file, records (or one .npz array file) and a .csv table with one row per trial. "
-            "Columns: motion (or x, y, z), scale, earthquake, overturned, and if known rocked and slid."
+            "Columns: motion (or x, y, z), scale, earthquake, overturned. Optional columns: rocked, slid."
         ),
     ],
     restitution: options.MeasuredRestitution = None,

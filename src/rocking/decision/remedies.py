@@ -1,4 +1,4 @@
-"""Margins of bodies to overturning, and retrofit measures: anchors, wider base, lower centre, isolators."""
+"""Margins of bodies to overturning, and retrofit measures: anchors, wider base, lower centre of mass, isolators."""
 
 import math
 import warnings
@@ -141,8 +141,8 @@ PERIODS, DAMPING = np.round(np.geomspace(0.5, 6.0, 40), 2), 0.1
 ASSUMED = (
     "Anchors: body, anchors and floor are rigid, without uplift and amplification. The anchors of one edge pull "
     "vertically, with the other edge as the pivot. Shear without friction. No safety factor.",
-    "Wider base, lower centre: mass and moment of inertia about the centre do not change. A wider base extends "
-    "equally on both sides.",
+    "Wider base, lower centre of mass: mass and moment of inertia about the centre of mass do not change. A wider base "
+    "extends equally on both sides.",
     f"Isolators: linear, {100 * DAMPING:g} % of critical damping, horizontal only, with a rigid body. Vertical motion "
     "is transmitted; its largest downward acceleration is used throughout.",
 )
@@ -242,7 +242,7 @@ def tension(body: Body, motion: GroundMotion, factor: float, gravity: float) -> 
 def lengths_without_uplift(
     body: Body, motions: Sequence[GroundMotion], factor: float, gravity: float
 ) -> tuple[float, float]:
-    """Return the extension of each side, and the lowering of the centre, without uplift [m]; infinite if impossible."""
+    """Return extension of each side and lowering of the centre of mass that prevent uplift [m]; infinite: none."""
     sides = [body.side(foot, gravity) for foot in FEET]
     narrow, height = min(side.half_width for side in sides), sides[0].centre_height
     ratio = 0.0
@@ -299,7 +299,7 @@ def isolation(body: Body, motions: Sequence[GroundMotion], margin: float, gravit
 def changed(body: Body, ballast: bool = False, /, *, out: float = 0.0, down: float = 0.0) -> Block:
     """Return a block of equal mass and inertia with feet further outside and a lower centre of mass [m].
 
-    With ballast, a mass on the ground lowers the centre; its mass and inertia are added.
+    With ballast, a mass on the ground lowers the centre of mass; its mass and inertia are added.
     """
     left, right = body.feet
     width, x, y = right - left + 2.0 * out, body.centre[0] - left + out, body.centre[1] - body.ground - down

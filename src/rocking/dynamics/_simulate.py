@@ -102,7 +102,7 @@ def simulate(
     Parameters
     ----------
     body : Body, Solid or SpatialBody
-        A plane body (Block, Section, MassPoints), or a 3D body with mass, centre, inertia and base.
+        A plane body (Block, Section, MassPoints), or a 3D body with mass, centre of mass, inertia and base.
     motion : GroundMotion, Pulse, mapping or tuple
         The motion along x, or ``{"x": .., "y": .., "z": ..}`` with z upwards, or up to three motions in this order. All
         components start at the same time. A record is linear between its samples; a pulse is exact. A plane body uses x

@@ -99,7 +99,7 @@ class ImpactLaw:
         return {"seed": int(getattr(self, "seed", 0)), **tables}
 
     def draws(self, numbers: Any) -> FloatArray:
-        """Return the factors of many histories, for a law with one random number per history.
+        """Return the factors on the coefficient of restitution, for a law with one random number per history.
 
         Parameters
         ----------

@@ -145,7 +145,7 @@ class Response(ResponseBase):
 
     @property
     def peak_ratio(self) -> float:
-        """Peak rotation over the slenderness angle of its side [-]. A body with a value above 1 need not overturn."""
+        """Peak rotation / slenderness angle of its side [-]. A body with a value above 1 need not overturn."""
         return self.peak_rotation / self.parameters.side(self.trajectory.peak_rotation).slenderness_angle
 
     @property
@@ -155,7 +155,7 @@ class Response(ResponseBase):
 
     @property
     def least_force(self) -> float:
-        """Smallest normal contact force during rocking over the weight; NaN without rocking [-].
+        """Smallest normal contact force during rocking / weight; NaN without rocking [-].
 
         A negative force is tensile. The force is evaluated at the samples, uplifts and impacts, up to the overturning
         time. Inside a step, the force may be smaller: for 2 of 24 random records with a step of 0.005 s, it was smaller
@@ -602,7 +602,7 @@ def _extended(computed: Any, length: float, trajectory: Any, segments: Segments)
 
 
 def _until_rest(trajectory: Any, segments: Segments, min_stretches: int) -> tuple[Any, Segments]:
-    """Return a response without the samples at rest at its end. At least `min_stretches` stretches are kept."""
+    """Return a response without the samples at rest at its end. At least `min_stretches` segments are kept."""
     moving = (trajectory.rotation != 0.0) | (trajectory.angular_velocity != 0.0)
     last = max(int(moving.nonzero()[0][-1]) + 2 if moving.any() else 2, min_stretches)
     if last >= trajectory.rotation.size:

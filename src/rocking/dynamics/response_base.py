@@ -300,7 +300,7 @@ def ground_at_rest(step: float, length: float) -> Segments:
 
 
 def followed(segments: Segments, length: float, parts: int, motion: Motion) -> Segments:
-    """Return a motion, cut or extended by rest to a length [s]. `parts` subdivides the stretches of a pulse."""
+    """Return a motion, cut or extended by rest to a length [s]. `parts` subdivides the segments of a pulse."""
     if isinstance(motion, Pulse):
         segments = segments.refined(parts)
     check_samples(length / segments.step)

@@ -150,7 +150,7 @@ class BedFit:
     """One explanation at its maximum likelihood parameters."""
 
     physics: Physics  # the fitted explanation
-    points: int  # maximum likelihood number of contact points of the table [-]
+    points: int  # number of contact points with the largest likelihood [-]
     values: dict[str, float]  # maximum likelihood parameters
     floor: float  # floor, slope: scatter around the prediction, as in `likelihood.scatter` [-]
     slope: float

@@ -217,7 +217,7 @@ def case(slenderness: int, model: str, frequency: float, effort: ComparisonEffor
 
 
 def first_overturning(system: HarmonicRocking, amplitudes: FloatArray) -> float:
-    """Return the first amplitude that overturns a body from rest also with another step error; NaN for none."""
+    """Return the smallest amplitude that overturns a body from rest with both step errors; NaN without overturning."""
     numerics = Numerics(step_error=10.0 * STEP_ERROR)  # after long chaotic motion the rounding decides
     for amplitude in amplitudes.tolist():
         if (

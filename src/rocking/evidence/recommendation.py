@@ -47,7 +47,7 @@ class ModelForBody:
     record: TrackRecord | None = None
     reasons: tuple[str, ...] = ()  # reasons why the model does not hold for this body
     concerns: tuple[str, ...] = ()  # known defects of the model for this body, with their size
-    outcome: Outcome | None = None  # outcome under the motion, if any
+    outcome: Outcome | None = None  # outcome under the motion; None without a motion
     peak_ratio: float = math.nan  # peak rotation / slenderness angle of its side, NaN without a motion [-]
 
     @property

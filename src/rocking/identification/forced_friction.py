@@ -107,7 +107,7 @@ def _from_midpoints(problem: Forced) -> Forced:
 
 
 def _initial_unknowns(problem: Forced, posterior: ForcedPosterior) -> FloatArray:
-    """Return unknowns, with the states of shortened half cycles at their middle."""
+    """Return the unknowns; the state of a shortened half cycle is the state at the middle of its time."""
     flights, begin = posterior.problem.flights(posterior.fit.x, np.zeros((1, SIZE + 2)))
     x, which = posterior.fit.x.copy(), np.flatnonzero(~problem.excursions.joined)
     x[SIZE:].reshape(-1, 2)[which] = np.stack(flights.at((problem.excursions.begin - begin[0])[which], which), axis=1)

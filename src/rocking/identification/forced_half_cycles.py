@@ -132,7 +132,7 @@ def struck(
 
     `before` is the angular velocity before the impact, and `after` that after an impact without sliding. `slip` is the
     velocity of the old foot [m/s]. `body` contains the levers of both feet, the height, and the moment of inertia
-    about the centre / mass [m, m2].
+    about the centre of mass / mass [m, m2].
     """
     old, new, height, inertia = body
     ratio, width, foot_inertia = after / before, old + new, inertia + height**2

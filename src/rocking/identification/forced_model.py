@@ -109,7 +109,7 @@ class Forced:
 
     @cached_property
     def believed(self) -> list[tuple[float, float]]:
-        """Half width, height of the centre, p and R, for the right and for the left foot."""
+        """Half width, height of the centre of mass, p and R, for the right and for the left foot."""
         body = self.prior.body
         assert body is not None
         sides = body.side("right"), body.side("left")

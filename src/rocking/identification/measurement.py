@@ -54,7 +54,10 @@ class ImpactTimes:
         times = _row("times", self.times, "s")
         if not _FEWEST <= times.size <= _MOST:
             raise InvalidValueError(
-                "times of impacts must be {fewest} to {most}, got {count}", fewest=_FEWEST, most=_MOST, count=times.size
+                "the number of impact times must be {fewest} to {most}, got {count}",
+                fewest=_FEWEST,
+                most=_MOST,
+                count=times.size,
             )
         _increasing("times", times)
         object.__setattr__(self, "times", times)

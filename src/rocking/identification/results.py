@@ -275,7 +275,7 @@ class Identification(Exported):
     def law(self, *, seed: int = 0) -> RandomRestitution:
         """Return a law of the next impacts: one draw of the uncertain coefficients, and the scatter at each impact.
 
-        The coefficients of both feet and the scatter are drawn once per law, jointly from the posterior. If the
+        Each law samples the coefficients of both feet and the scatter once, from their joint posterior. If the
         tilt is unknown, the mean of both feet is more accurate than the coefficient of each foot. Therefore the draws
         of both feet are correlated. The coefficient of each impact then scatters about the draw of its foot. All
         histories of one law have the same draw. Laws with several seeds give the uncertainty of a response.

@@ -18,7 +18,7 @@ from rocking.conventions import BoolArray, FloatArray, IntArray
 
 
 def overturning_speed(alpha: FloatArray) -> FloatArray:
-    """Return the smallest angular velocity over p with overturning [-]."""
+    """Return the smallest angular velocity / p with overturning [-]."""
     return np.asarray(2.0 * np.sin(0.5 * alpha))  # Eq. 264
 
 

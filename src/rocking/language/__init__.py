@@ -6,7 +6,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from rocking.messages import Amount, Fact, Message, Parameter, Range
+from rocking.messages import Amount, Clause, Fact, Message, Parameter, Range
 
 LANGUAGES = {"en": ".", "de": ",", "it": ",", "zh": "."}
 """Languages of reports by their ISO 639-1 codes, with their decimal marks."""
@@ -45,7 +45,8 @@ class Language(string.Formatter):
     def format_field(self, value: Any, format_spec: str) -> str:
         """Return a fact in the format of the language."""
         if isinstance(value, Message):
-            return self(value)
+            text = self(value)
+            return text.removesuffix(".").removesuffix("。") if isinstance(value, Clause) else text
         if isinstance(value, tuple):
             return "; ".join(self.format_field(fact, "") for fact in value)
         if isinstance(value, Fact):

@@ -17,7 +17,7 @@ def on_floor(motion: GroundMotion, number: int, storeys: int, period: float, dam
     """Return the horizontal motion of a floor of an elastic building; the vertical part is unchanged.
 
     All storeys have equal mass and equal stiffness, and all modes have equal damping. The building carries no other
-    load, and the ground is rigid. The samples are exact for straight lines between the samples of the record. The floor
+    load, and the ground is rigid. The samples are exact for a record that is linear between its samples. The floor
     motion ends with the record. To include the free vibration after the record, pad the record.
 
     Parameters

@@ -156,10 +156,10 @@ def resampled(motion: GroundMotion, time_step: float) -> GroundMotion:
     """Return the motion at another time step.
 
     A finer step of any ratio interpolates linearly between the samples, so that every new sample is exact. If the ratio
-    is a whole number, simulations do not change, but the Arias intensity decreases to that of the straight lines. A
-    coarser step must be an integer multiple of the time step of the motion. For a coarser step, a linear-phase low pass
-    (Hamming window, 10 taps per multiple on each side, no shift) first removes the frequencies above the new Nyquist
-    frequency.
+    is a whole number, simulations do not change, but the Arias intensity decreases to the Arias intensity of the linear
+    interpolation. A coarser step must be an integer multiple of the time step of the motion. For a coarser step, a
+    linear-phase low pass (Hamming window, 10 taps per multiple on each side, no shift) first removes the frequencies
+    above the new Nyquist frequency.
 
     Parameters
     ----------

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
     from matplotlib.transforms import Affine2D
 
-NOT_MOVED = "an animation requires a result of simulate or free_rocking"
+NOT_MOVED = "an animation needs a result of simulate or free_rocking, for a body without restraints"
 MOST_FRAMES = 500  # maximum number of frames of a GIF, for files of moderate size
 
 _LIFTED = "The forces include the vertical ground motion; the animation does not show this motion."
@@ -227,7 +227,7 @@ def _shown_until(response: Response | InSpace) -> float:
     if isinstance(response, InSpace):
         return end_of(response)
     if not isinstance(response, Response):
-        raise InvalidValueError(NOT_MOVED)
+        raise InvalidValueError(NOT_MOVED, hint="save a picture (.png or .svg)")
     return scene_until(response)
 
 

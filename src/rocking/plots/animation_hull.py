@@ -27,7 +27,7 @@ _TURNED, _PLANE, _RAISED = 0.6, -1.35, 0.35
 _LIGHT = np.array([0.35, -0.25, 0.9])
 _ROTATION = "#0070B2"
 _DARK, _LINE = 0.35, 80
-_SUNK = 1e-3  # largest plotted depth of a corner below the ground, over the size
+_SUNK = 1e-3  # largest plotted depth of a corner below the ground / size
 
 
 InSpace = HullResponse | SpatialResponse | ContactResponse

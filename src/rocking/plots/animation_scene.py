@@ -17,7 +17,7 @@ FASTEST_RATE, MOST_SAMPLES = 120.0, 60_000  # samples per second, and maximum nu
 _MARGIN = 0.10
 _FAR = 1.5
 _POSES = 400
-_LEVEL = 1e-9  # tolerance of the height of a corner on the ground, over its distance from the foot
+_LEVEL = 1e-9  # tolerance of the height of a corner on the ground / its distance from the foot
 
 _STEP = 0.01
 """Step of the integration of a fall, over 1 / p. The truncation error is below 1e-8 of the angle."""
@@ -29,9 +29,9 @@ _HALVINGS = 50
 class DrawnShape:
     """A body with its ground at y = 0 and the middle between its feet at x = 0."""
 
-    # density over the largest density, and rings: the outline and its holes [m]
+    # density / largest density, and rings: the outline and its holes [m]
     regions: list[tuple[float, list[FloatArray]]]
-    # mass points (x, y) [m] with their mass over the largest mass; empty for a solid body; shape (n, 3)
+    # mass points (x, y) [m] with their mass / largest mass; empty for a solid body; shape (n, 3)
     points: FloatArray
     feet: tuple[float, float]  # left and right foot [m]
     centre: tuple[float, float]  # centre of mass [m]

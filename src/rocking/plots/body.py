@@ -147,7 +147,7 @@ def _restraints(axes: "Axes", body: Restrained) -> None:
 
 
 def outlines(body: Body) -> "list[tuple[Path, float]]":
-    """Return regions with their holes as paths [m], and density over the largest density; empty for mass points."""
+    """Return regions with their holes as paths [m], and density / largest density; empty for mass points."""
     section = section_of(body)
     if not isinstance(section, Section):
         return []

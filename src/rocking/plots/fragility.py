@@ -262,9 +262,9 @@ def incremental_dynamic_analysis_picture(analysis: IncrementalDynamicAnalysis) -
     """Draw an incremental analysis, with the intensity measure on the vertical axis.
 
     Left: one grey curve per motion up to the first overturning. Higher levels without overturning (resurrection) are
-    blue, and neighbours are joined. Each motion with overturning has a lane, sorted by first crossing: brown with
-    overturning, blue without. Right: fraction of motions with overturning at each level, and fraction of motions with
-    a lower first crossing.
+    blue, and lines connect adjacent levels. Each motion with overturning has a lane, sorted by first crossing: brown
+    with overturning, blue without. Right: fraction of motions with overturning at each level, and fraction of motions
+    with a lower first crossing.
 
     Parameters
     ----------

@@ -79,7 +79,7 @@ def inventory_picture(assessment: Assessment, most: int = MOST) -> "Figure":
     left.set_xlabel(say("fraction of motions with overturning [-]"))
     left.axvline(assessment.thresholds.overturning_red, **_RED)
     right.set_xlim(left=0.0)
-    right.set_xlabel(say("no uplift below [g]"))
+    right.set_xlabel(say("largest PGA without uplift [g]"))
     _finish(figure, right, assessment, len(verdicts))
     return figure
 
@@ -128,7 +128,7 @@ def inventory_distribution(assessment: Assessment) -> "Figure":
         panel.set_ylabel(say("number of objects [-]"))
     left.set_xlabel(say("fraction of motions with overturning [-]"))
     left.axvline(assessment.thresholds.overturning_red, **_RED)
-    right.set_xlabel(say("no uplift below [g]"))
+    right.set_xlabel(say("largest PGA without uplift [g]"))
     _finish(figure, right, assessment, len(verdicts))
     return figure
 

@@ -48,7 +48,7 @@ def regime_map_picture(body: Body, largest: float = 1.5, cells: int = 40) -> "Fi
     body : Body
         The body.
     largest : float
-        Largest acceleration over gravity, and equal largest coefficient of friction [-].
+        Largest acceleration / gravity, and equal largest coefficient of friction [-].
     cells : int
         Number of cells along each axis, from 2 to 400.
 

@@ -196,7 +196,7 @@ def velocity_at(response: Response, time: Any) -> FloatArray:
 
 
 def over_slenderness(response: Response, rotation: FloatArray) -> FloatArray:
-    """Return rotations [rad] over the slenderness angle of their side [-]. Above 1, the centre is beyond the foot."""
+    """Return rotations [rad] / slenderness angle of their side [-]. Above 1, the centre of mass is beyond the foot."""
     parameters = response.parameters
     return rotation / np.where(rotation > 0.0, parameters.right.slenderness_angle, parameters.left.slenderness_angle)
 

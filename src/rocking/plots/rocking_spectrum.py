@@ -1,4 +1,4 @@
-"""Pictures of rocking spectra: peak rotation over the size of blocks, one curve per slenderness, and overturning."""
+"""Pictures of rocking spectra: peak rotation against the size of blocks, one curve per slenderness, and overturning."""
 
 import math
 from typing import TYPE_CHECKING

@@ -324,7 +324,7 @@ def _landscape(figure: "Figure", axes: "PolarAxes", equilibria: Equilibria, pose
     axes.set_rgrids([60.0, 120.0], labels=["60°", "120°"], color="white")
     axes.set_thetagrids([0.0, 90.0, 180.0, 270.0], labels=["x", "y", "\N{MINUS SIGN}x", "\N{MINUS SIGN}y"])
     axes.grid(linewidth=0.3, color="white", alpha=0.5)
-    figure.colorbar(image, ax=axes, shrink=0.75, pad=0.12, label="rise of the centre [mm]")
+    figure.colorbar(image, ax=axes, shrink=0.75, pad=0.12, label="rise of the centre of mass [mm]")
     legend_below(figure, handles[::-1], 4)
 
 

@@ -243,7 +243,7 @@ class _Sections:
             say("object"),
             say("direction"),
             say("rating"),
-            say("no uplift below [g]"),
+            say("largest PGA without uplift [g]"),
             say("uplift [%]"),
             say("overturned"),
             say("{level:.10g}% interval [%]", level=100.0 * assessment.thresholds.level),

@@ -29,7 +29,7 @@ class Implication:
     friction_demand : float
         Friction demand of the impact [-]. With a smaller coefficient of friction, the foot slips during the impact.
     energy_loss : float
-        Energy loss over the kinetic energy before the impact, 1 - r^2 I_O'/I_O [-].
+        Energy loss / kinetic energy before the impact, 1 - r^2 I_O'/I_O [-].
     largest_coefficient : float
         Energy bound sqrt(I_O / I_O') on the coefficient [-].
     within_base, within_energy : bool

@@ -71,7 +71,7 @@ class RestitutionModel(ABC):
     domain : str
         Bodies to which the model applies, and its result for other bodies.
     inertia_only : bool
-        True if the model depends only on mass, centre, polar inertia and feet.
+        True if the model depends only on mass, centre of mass, polar inertia and feet.
     can_stop : bool
         True if the equation can give r <= 0, which means that the body stops at the impact.
     keeps_energy : bool

@@ -78,7 +78,8 @@ Bed = tuple[IntArray, FloatArray, FloatArray]  # cell of the table, and fraction
 class BedTable:
     """Table of impulse positions kappa over half the base, from the middle of the base (0) to the new foot (1)."""
 
-    flatness: FloatArray  # nodes of 1 / (1 + rho) [-], rho = (I_C + m h^2) / (m w^2), w half the distance of the feet
+    # nodes of 1 / (1 + rho) [-], rho = (I_C + m h^2) / (m w^2), w: half of the distance between the feet
+    flatness: FloatArray
     offset: FloatArray  # nodes of the distance from the plumb line back to the middle of the base, over w [-]
     damping: FloatArray  # nodes of the damping ratio [-]
     hardness: FloatArray  # nodes of the dimensionless landing speed v sqrt(k / m) / g [-]

@@ -50,7 +50,7 @@ class ContactBedModel(InertiaModel):
     damping : float
         Damping ratio zeta = c / (2 sqrt(k m)) of the bed [-]. The table has values from 0.05 to 5.
     hardness : float
-        Landing speed of the new foot times sqrt(k / m) over gravity [-]. The table has values from 30 to 1000. A harder
+        Landing speed of the new foot times sqrt(k / m) / gravity [-]. The table has values from 30 to 1000. A harder
         bed and a faster impact are equivalent.
     friction : float
         Coefficient of friction [-]; infinite by default. For all numbers of points, a base sticks for values above m h

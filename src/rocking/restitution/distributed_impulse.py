@@ -114,13 +114,13 @@ def _centre_ahead(sigma: FloatArray, patches: FloatArray, end: float, q: float) 
         near, far = np.maximum(a - sigma, 0.0) / scale, np.maximum(b - sigma, 0.0) / scale
         force += _power_difference(near, far, q + 1.0)
         moment += _power_difference(near, far, q + 2.0)
-    # without a flat stretch ahead, the impulse acts at the foot
+    # without a flat segment ahead, the impulse acts at the foot
     centre = np.divide(moment, force, out=np.zeros_like(sigma), where=force > 0.0)
     return np.where(force > 0.0, sigma + reach * centre, end)  # Eq. 111
 
 
 def _power_difference(near: FloatArray, far: FloatArray, power: float) -> FloatArray:
-    """Return (far^power - near^power) / power, without cancellation for narrow stretches."""
+    """Return (far^power - near^power) / power, without cancellation for narrow segments."""
     ratio = np.divide(near, far, out=np.ones_like(far), where=far > 0.0)
     with np.errstate(divide="ignore"):
         return np.asarray(-(far**power) * np.expm1(power * np.log(ratio)) / power)

@@ -118,7 +118,7 @@ def identity_report(body: Body, model: RestitutionModel, *, foot: Foot = "right"
 
 
 def _dumbbells(body: Body) -> list[MassPoints]:
-    """Return pairs of masses with mass, centre and polar inertia of the body: horizontal and, if possible, vertical."""
+    """Return mass pairs with mass, centre of mass and polar inertia of the body: horizontal, if possible vertical."""
     refuse_frame(body)
     moments = body.local_moments
     arm = math.sqrt(moments.polar / moments.mass)

@@ -72,7 +72,7 @@ class ImpactGeometry:
 
     @classmethod
     def of_slenderness(cls, slenderness: FloatArray | float) -> "ImpactGeometry":
-        """Return the impact of homogeneous rectangles with b = 1 m, h = slenderness.
+        """Return the impact of homogeneous rectangles with b = 1 m and h = slenderness ratio x 1 m.
 
         Parameters
         ----------
@@ -105,7 +105,7 @@ class ImpactGeometry:
 
 
 def contact_of(body: Body, foot: Foot) -> FloatArray:
-    """Return the flat stretches of the base relative to the plumb line of the centre of mass [m], shape (n, 2)."""
+    """Return the flat segments of the base relative to the plumb line of the centre of mass [m], shape (n, 2)."""
     patches = np.array(body.local_contact, dtype=np.float64).reshape(-1, 2) - body.local_moments.x
     return patches if foot == "right" else np.ascontiguousarray(-patches[::-1, ::-1])
 

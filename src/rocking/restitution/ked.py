@@ -179,7 +179,7 @@ def projected_moment(body: Body, foot: Foot) -> float:
     Returns
     -------
     float
-        Twice the kinetic energy after stage 2 over the square of the angular velocity before [kg m2].
+        Twice the kinetic energy after stage 2 / square of the angular velocity before [kg m2].
 
     Raises
     ------
@@ -267,7 +267,7 @@ class EnergyBalance:
 
     @property
     def fractions(self) -> dict[str, float]:
-        """Totals over the energy before the impact, by stage [-]."""
+        """Totals / energy before the impact, by stage [-]."""
         before = self.totals["before"]
         return {stage: energy / before for stage, energy in self.totals.items()}
 

@@ -64,7 +64,7 @@ class PlasticWinkler(InertiaModel):
         return np.asarray(1.0 / (1.0 + np.exp(-_log_odds()(logarithm))))
 
     def raw_coefficient(self, body: Body, foot: Foot) -> float:
-        """Return the coefficient of a body with the contact stretches of its base [-]."""
+        """Return the coefficient of a body with the contact segments of its base [-]."""
         geometry = ImpactGeometry.of_body(body, foot)
         lever, back = float(geometry.new_lever), float(geometry.old_lever)
         edges = (contact_of(body, foot) / lever).ravel().tolist()
@@ -107,10 +107,10 @@ def land(kappa: float, back: float, stretches: FloatArray) -> tuple[float, float
     """Return the end of the contact and the velocity after the bed. Levers are divided by the new lever."""
     # The state is (v, omega, Int v dt, Int omega dt). A point x of the base descends if omega x > v, with a pressure of
     # k_w times its indentation. The equations have a kink when the edge v / omega of the pressure passes an end of a
-    # stretch, at which the integration restarts.
-    # The first result is the end of the base that leaves the bed last, or the foot if it is nearer, over the lever of
-    # the new foot [-]. The second result is the ratio of angular velocities after and before, zero for a body that
-    # stops [-].
+    # segment, at which the integration restarts.
+    # The first result is the end of the base that leaves the bed last, or the foot if it is nearer, divided by the
+    # lever of the new foot [-]. The second result is the ratio of angular velocities after and before, zero for a body
+    # that stops [-].
     bed = _Bed(kappa, stretches)
     state: _State = (-back, 1.0, 0.0, 0.0)
     section, direction = bed.first_section(-back), 1
@@ -132,7 +132,7 @@ class _Bed:
         self.turn = -kappa * self.push
 
     def moments_beyond(self, section: int) -> _State:
-        """Return length, first and second moment of the stretches beyond a section."""
+        """Return length, first and second moment of the segments beyond a section."""
         full = self.stretches[(section + 1) // 2 :]
         return tuple(sum((far**n - near**n) / n for near, far in full) for n in (1, 2, 3))
 
@@ -141,7 +141,7 @@ class _Bed:
         section = bisect_right(self.edges, edge)
         if section == 0 or self.edges[section - 1] != edge:
             return section
-        # the edge is the end of a stretch: the first force determines which of the two adjacent sections follows
+        # the edge is the end of a segment: the first force determines which of the two adjacent sections follows
         length, first, second = self.moments_beyond(section - 1)
         falls = self.push * (first - edge * length) >= edge * self.turn * (second - edge * first)
         return section if falls else section - 1
@@ -171,7 +171,7 @@ class _Bed:
         square: list[float] = []
         cube: list[float] = []
         inside = section % 2 == 1
-        end = self.edges[section] if inside else 0.0  # zero if the pressure ends between two stretches
+        end = self.edges[section] if inside else 0.0  # zero if the pressure ends between two segments
         reach, lever, inertia = [length + end], [first + 0.5 * end * end], [second + end**3 / 3.0]
         for k in range(_ORDER):
             if k:

@@ -72,7 +72,7 @@ class IdentificationProblem:
 
     @classmethod
     def of(cls, document: "IdentificationDocument", inputs: InputFiles) -> "IdentificationProblem":
-        """Return the problem of an input file. `inputs` records the files that it names."""
+        """Return the identification problem of an input file. `inputs` records the files named in the input file."""
         body = None
         if document.body is not None:
             with located("body"):

@@ -31,7 +31,10 @@ class PredictionProblem:
 
     @classmethod
     def of(cls, document: "PredictionDocument", inputs: InputFiles) -> "PredictionProblem":
-        """Return the problem of an input file. `inputs` records the files that it names."""
+        """Return the prediction problem that an input file defines.
+
+        `inputs` records the files named in the input file.
+        """
         with located("body"):
             body = without_restraints(any_body_of(document.body, inputs))
         motions: Any

@@ -126,7 +126,7 @@ def _in_slenderness_angles(rotation: float | Angle | None, body: Any) -> float |
 def problem_of(
     tables: "ResponseTables", body: Any, motion: Any, *, scale: float | None = None, inputs: InputFiles | None = None
 ) -> ResponseProblem:
-    """Return the problem of tables, body and motion. `scale` replaces the scale factor of the tables."""
+    """Return the simulation problem of tables, body and motion. `scale` replaces the scale factor of the tables."""
     table, start = getattr(tables, "motion", None), tables.response
     mechanics = mechanics_for(body, start.friction)
     ground = start.model_dump(include={"friction", "normal_restitution", "normal_restitution_law"}, exclude_none=True)
@@ -175,7 +175,10 @@ def _refuse(reason: str, table: Any, keys: set[str]) -> None:
 
 
 def response_problem(document: "ResponseDocument", files: InputFiles, *, in_space: bool = False) -> ResponseProblem:
-    """Return the problem of an input file. `files` records the files that it names; `in_space` requires a 3D body."""
+    """Return the simulation problem of an input file.
+
+    `files` records the named files; `in_space` requires a 3D body.
+    """
     table = document.motion
     with located("body"):
         turned = in_space or (table is not None and table.y is not None)

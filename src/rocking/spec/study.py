@@ -37,7 +37,7 @@ class StudyProblem:
 
     @classmethod
     def of(cls, document: "StudyQuestion", files: Path | InputFiles) -> "StudyProblem":
-        """Return the problem of the tables. `files` records the named files, or is their folder."""
+        """Return the study problem of the tables. `files` records the named files, or is their folder."""
         inputs = files if isinstance(files, InputFiles) else InputFiles(files)
         with located("settings"):
             stated, axes = document.settings.stated(), document.axes

@@ -39,7 +39,7 @@ _HOW = "a folder contains one body file, record files or one array file (.npz), 
 def files_of(folder: Path) -> tuple[Path, Path]:
     """Return the body file and the table of outcomes of a folder. The table names the records."""
     if not folder.is_dir():
-        raise InvalidValueError("The folder does not exist", hint=_HOW).at(str(folder))
+        raise InvalidValueError("no such folder", hint=_HOW).at(str(folder))
     files = sorted(path for path in folder.iterdir() if path.is_file())
     outcome_tables = [path for path in files if path.suffix.lower() == ".csv" and is_outcomes(path)]
     bodies = [path for path in files if path.suffix.lower() in FORMATS]
@@ -170,7 +170,7 @@ class ValidationProblem:
 
     @classmethod
     def of(cls, document: "ValidationDocument", files: tuple[Path, Path], inputs: InputFiles) -> "ValidationProblem":
-        """Return the problem of a folder. `files` contains its body file and its table of outcomes."""
+        """Return the validation problem of a folder. `files` contains its body file and its table of outcomes."""
         with located("body"):
             body = without_restraints(any_body_of(document.body, inputs))
         if document.predict.pga is not None:
@@ -294,9 +294,7 @@ class _Records:
         if not (self._inputs.folder / own["record"]).is_file():
             if self._arrays is not None:
                 return self._in_arrays(self._arrays, word)
-            raise InvalidValueError(
-                "The record file {record} does not exist in {folder}.", record=own["record"], folder=self._inputs.folder
-            )
+            raise InvalidValueError("no such file").at(own["record"])
         record = motion_of(checked(OneMotionTable, {**self._keys, **own}), self._inputs)
         assert isinstance(record, GroundMotion)
         return record

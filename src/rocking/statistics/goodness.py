@@ -51,7 +51,7 @@ class Goodness:
     kolmogorov: Statistic  # largest distance between the fraction of failures in a group and the curve
     lower: FloatArray  # lower, upper: lowest and highest levels of the groups [unit of the levels]
     upper: FloatArray
-    trials: FloatArray  # trials, observed, expected: trials, failures, and failures by the curve, per group [-]
+    trials: FloatArray  # per group [-]: number of trials, observed failures, and failures expected from the curve
     observed: FloatArray
     expected: FloatArray
     # 95 % band that the curve predicts for the fraction of failures per group [-]

@@ -354,7 +354,7 @@ class LognormalFit:
     def bootstrap(
         self, kind: Resampling | Literal["capacities"] | None = None, *, repetitions: int = 1000, seed: int = 0
     ) -> BootstrapSample | CapacitySample:
-        """Return many repetitions of the study.
+        """Return bootstrap samples of the fitted curve.
 
         Parameters
         ----------

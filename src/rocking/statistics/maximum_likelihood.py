@@ -137,8 +137,8 @@ def verdict_of(
 def _clustered(counts: Counts) -> str:
     if counts.scarcity:
         return Message(
-            "Intervals are from the likelihood and may be much too narrow: they assume independent outcomes of one "
-            "cluster. There are too few clusters for their bootstrap ({reason}).",
+            "The intervals are from the likelihood and may be much too narrow, because the outcomes of one cluster are "
+            "treated as independent. The number of clusters is too small for a bootstrap of clusters ({reason}).",
             {"reason": counts.scarcity},
         )
     if counts.draws_capacities:

@@ -13,7 +13,7 @@ from rocking.errors import extra
 from rocking.messages import plain_texts
 from rocking.motions.pulse import Motion
 from rocking.outcome import contact_words
-from rocking.quantities import HISTORY, attributes
+from rocking.quantities import HISTORY, WITH_RESTRAINTS, attributes
 from rocking.studies.adaptive_grid import AdaptiveGrid, Plane, refined
 from rocking.studies.axis import Axis
 
@@ -67,9 +67,10 @@ def overturning_map(  # noqa: PLR0913 - users set every one of them
     -------
     xarray.Dataset
         Dataset over the two axes (y first): outcome, mode, peak_rotation, peak_ratio, impacts, side, overturning_time,
-        status, error, with units. With `refine`, the dataset also contains ``refined_mode``, ``refined_peak_ratio``,
-        ``refined_x`` and ``refined_y`` over ``point``, for all computed points. A cell that could not be computed has
-        mode -3 and a status with the reason. It does not affect other cells.
+        status, error, with units; with restraints also residual_rotation, yielded_restraints and broken_restraints.
+        With `refine`, the dataset also contains ``refined_mode``, ``refined_peak_ratio``, ``refined_x`` and
+        ``refined_y`` over ``point``, for all computed points. A cell that could not be computed has mode -3 and a
+        status with the reason. It does not affect other cells.
 
     Raises
     ------
@@ -136,7 +137,8 @@ def map_arrays(
     plane = Plane.of(*subject, **options)
     results, work = plane.answers(*plane.mesh(), progress=progress)
     shape = (plane.y.values.size, plane.x.values.size)
-    variables = {name: results[name].reshape(shape) for name in HISTORY}
+    names = (*HISTORY, *(name for name in WITH_RESTRAINTS if name in results))
+    variables = {name: results[name].reshape(shape) for name in names}
     if refine is not None:
         grid = AdaptiveGrid(plane, refine, progress)
         points, _ = refined(grid, variables["mode"], results["peak_ratio"])

@@ -1,4 +1,4 @@
-"""Rocking spectra: peak rotation of blocks over the size of the blocks, for slenderness angles and motions."""
+"""Rocking spectra: peak rotation of blocks against the size of the blocks, for slenderness angles and motions."""
 
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any

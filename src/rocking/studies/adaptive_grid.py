@@ -212,7 +212,7 @@ class RefinedMap:
     x: FloatArray  # x, y: coordinates of all points, in the units of the axes
     y: FloatArray
     modes: IntArray  # -3 failed, -2 no uplift, -1 no overturning, n >= 0 overturned after n impacts
-    peak_ratio: FloatArray  # peak rotation over the slenderness angle [-]
+    peak_ratio: FloatArray  # peak rotation / slenderness angle [-]
     base: BoolArray  # True for points of the map before refinement
 
 

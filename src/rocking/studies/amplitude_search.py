@@ -25,7 +25,7 @@ class Samples:
     scale: FloatArray  # factor on the motion [-]
     mode: IntArray  # mode of the history
     side: IntArray  # side to which the body overturned
-    peak: FloatArray  # peak rotation over the slenderness angle [-]
+    peak: FloatArray  # peak rotation / slenderness angle [-]
     time: FloatArray  # time of overturning [s]; NaN without overturning
     lost: FloatArray  # 1 for a tensile contact force [-]; NaN if not computed
 
@@ -141,8 +141,8 @@ class AmplitudeSearch:
 
 def suspicious(s: Samples) -> BoolArray:
     """Return True for intervals between equal verdicts that may contain another verdict."""
-    # intervals where the extrapolated peak without overturning exceeds 1, next to a largest peak without overturning,
-    # or next to a longest time of overturning
+    # intervals with an extrapolated peak above 1, and intervals next to a local maximum of the peak rotation without
+    # overturning or of the time of overturning
     same = s.same_body
     peak = np.where(s.falls, np.nan, s.peak)
     steps = np.where(same, np.abs(np.diff(peak)), np.nan)

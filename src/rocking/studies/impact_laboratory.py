@@ -48,7 +48,7 @@ class Laboratory:
     damping: float = 1.0  # damping ratio zeta of the whole bed [-]
     # elastic modulus of the layer divided by its thickness, per metre of depth of the block [Pa/m]
     modulus_over_thickness: float | None = None
-    release: float = 0.5  # initial rotation over the slenderness angle [-]
+    release: float = 0.5  # initial rotation / slenderness angle [-]
     friction: BaseFriction = field(default_factory=Sticking)  # by default, the base cannot slide
     profile: tuple[float, ...] = ()  # heights of the points above the base line [m]; empty for a flat base
     tolerance: float = 1e-9  # relative error of a step [-]

@@ -273,5 +273,5 @@ def modes_of(results: Arrays) -> np.ndarray:
 
 
 def peak_ratio(peak: FloatArray, right: FloatArray, left: FloatArray) -> FloatArray:
-    """Return the peak rotation over the slenderness angle of its side [-]. Values above 1 need not be overturning."""
+    """Return the peak rotation / slenderness angle of its side [-]. Values above 1 need not be overturning."""
     return np.abs(peak) / np.where(np.asarray(peak) < 0.0, left, right)  # Eq. 181

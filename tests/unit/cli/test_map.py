@@ -43,6 +43,16 @@ def test_json_is_the_python_call(answered):
     assert (told["refined_points"], told["sensitivity"]) == (None, None)
 
 
+def test_a_varied_restitution_is_not_a_stated_model(run):
+    """With the restitution as an axis no model is named; without, the stated model is named."""
+    words = ("--width", 0.5, "--height", 2, "--motion", PULSE, "--y", "pga=2,6")
+    out = run(*words, "--x", "restitution=0.5,0.9")[1]
+    assert "Restitution: varied" in out
+    assert "The coefficient of restitution is varied along an axis of the map." in out
+    assert "calibrated" not in out
+    assert "ked, as stated in the input" in run(*words, "--x", "slenderness_ratio=3,4", "--restitution", "ked")[1]
+
+
 @pytest.mark.slow
 def test_islands_are_those_of_the_picture(run, answered):
     """Cells without overturning that overturning surrounds are counted, drawn and defined, with what is not decided."""

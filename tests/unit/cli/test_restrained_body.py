@@ -92,3 +92,16 @@ def test_an_isolated_base_has_no_restraints(run, file):
     code, _, err = run("simulate", file(ISOLATED + PIER[len(BLOCK) :], "both.toml"), "sine:amplitude=4,period=0.8")
     assert code != 0
     assert "A body with [isolator] has no [[restraint]] and no floor_slope" in err
+
+
+def test_simulate_suggests_files_that_it_writes(run, file, tmp_path):
+    """A response with restraints has a picture; an animation is refused and not suggested."""
+    command = ("simulate", file(PIER, "pier.toml"), "--motion", "sine:amplitude=3,period=0.8", "--restitution", "ked")
+    code, out, _ = run(*command, "--output", tmp_path / "response.png")
+    assert (code, ".html" in out, (tmp_path / "response.png").stat().st_size > 0) == (0, False, True)
+    assert "-o picture.png" in out
+    code, _, err = run(*command, "--output", tmp_path / "response.html")
+    assert code == 2
+    assert "for a body without restraints; save a picture (.png or .svg)" in err
+    free = run("simulate", file(BLOCK, "block.toml"), *command[2:])[1]
+    assert "-o animation.html" in free

@@ -90,7 +90,7 @@ def test_bad_rows_are_told_and_touch_nothing(run, answered, copy):
     (copy / "still.txt").write_text("0 0\n0.1 0\n0.2 0", "utf-8")
     after = answered(copy, *FEW)
     assert after["events"] == before["events"]
-    why = ("overturned must be 1, 0", "The record file record_9.txt does not exist", "broken.txt", "zero at all times")
+    why = ("overturned must be 1, 0", "record_9.txt: no such file", "broken.txt", "zero at all times")
     for k, (each, words) in enumerate(zip(after["not_read"], why, strict=True)):
         assert each.startswith(f"outcomes.csv, line {14 + k}: ")
         assert words in each
@@ -136,7 +136,7 @@ def test_a_scan_in_two_components(answered, tmp_path):
         (
             lambda at: (at / "outcomes.csv").write_text("motion,overturned\nx,1\n", "utf-8"),
             (),
-            "line 2: The record file x does not exist",
+            "line 2: x: no such file",
         ),
         (lambda at: (at / "outcomes.csv").write_text("motion,overturned\nrecord_0.txt,\n", "utf-8"), (), "are unknown"),
         (
@@ -146,7 +146,7 @@ def test_a_scan_in_two_components(answered, tmp_path):
         ),
         (lambda at: None, ("--set", "predict.fricton=0.4"), "did you mean friction"),
         (lambda at: None, ("--output", "found.xyz"), "unknown extension"),
-        (shutil.rmtree, (), "The folder does not exist"),
+        (shutil.rmtree, (), "no such folder"),
     ],
 )
 def test_refusals(refuses, copy, damage, words, why):

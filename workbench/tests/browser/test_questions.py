@@ -201,7 +201,7 @@ def test_inventory_numbers_are_shown(open_page: Callable[..., Any], shot: Callab
     expect(rows.first).to_contain_text("Fuß geklebt")
     expect(outcome.get_by_role("table", name="Rows without a rating")).to_contain_text("A-19 Vase")
     outcome.get_by_text("Lines that are not objects", exact=True).click()
-    expect(outcome.get_by_role("table", name="List lines that are not objects")).to_contain_text("Summe: 3")
+    expect(outcome.get_by_role("table", name="Lines of the list that are not objects")).to_contain_text("Summe: 3")
     header = section.get_by_label("Header of the list", exact=True)
     expect(header).to_have_text("Inv.-Nr.;Objekt;Maße (cm);;;Bemerkung\n;;Breite;Tiefe;Höhe;")
     shot(page, "inventory numbers")

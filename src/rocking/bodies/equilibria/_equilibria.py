@@ -255,7 +255,7 @@ class Equilibria:
         raise InvalidValueError("start and end are the same pose, {pose}. Use two different poses.", pose=pose.number)
 
     def _straight(self, pose: StablePose, azimuth: float) -> tuple[float, int]:
-        """Return the rise of the centre on the straight path to another pose [m], and the index of this pose."""
+        """Return the rise of the centre of mass on the straight path to another pose [m], and the index of the pose."""
         from scipy.spatial import ConvexHull
 
         horizontal = tilted(pose, azimuth)
@@ -324,7 +324,7 @@ def equilibria(
     GeometryError
         If the points span no volume.
     InvalidValueError
-        If the centre is not inside the hull of the points, or a number is not finite.
+        If the centre of mass is not inside the hull of the points, or a number is not finite.
 
     Examples
     --------

@@ -24,7 +24,7 @@ class Polytope:
 
     vertices: FloatArray  # positions of the vertices [m]; shape (n, 3)
     normals: FloatArray  # outward unit normals of the facets [-]; shape (f, 3)
-    heights: FloatArray  # distances of the facets from the centre [m]; shape (f,)
+    heights: FloatArray  # distances of the facets from the centre of mass [m]; shape (f,)
     ends: IntArray  # start and end vertex of each edge; shape (e, 2)
     sides: IntArray  # left and right facet of each edge; shape (e, 2)
 
@@ -38,7 +38,7 @@ class Polytope:
 
     @cached_property
     def inward(self) -> FloatArray:
-        """Distances of each edge from the projection of the centre on its left and right facet [m]; shape (e, 2)."""
+        """Distances of edges from projections of the centre of mass on the left and right facet [m]; shape (e, 2)."""
         start, sign = self.vertices[self.ends[:, 0]], np.array([-1.0, 1.0])
         across = np.cross(self.normals[self.sides], self.along[:, None, :])
         distance: FloatArray = sign * (start[:, None, :] * across).sum(axis=2)  # Eq. 244
@@ -46,32 +46,32 @@ class Polytope:
 
     @cached_property
     def beyond(self) -> FloatArray:
-        """Positions of both ends along each edge, from the projection of the centre on the line [m]; shape (e, 2)."""
+        """Positions of both ends of edges, from the projection of the centre of mass on the line [m]; shape (e, 2)."""
         position: FloatArray = (self.vertices[self.ends] * self.along[:, None, :]).sum(axis=2)
         return position
 
     @cached_property
     def feet(self) -> FloatArray:
-        """Projections of the centre on the lines of the edges [m]; shape (e, 3)."""
+        """Projections of the centre of mass on the lines of the edges [m]; shape (e, 3)."""
         foot: FloatArray = self.vertices[self.ends[:, 0]] - self.beyond[:, :1] * self.along
         return foot
 
     @cached_property
     def stable(self) -> BoolArray:
-        """True for facets that contain the projection of the centre; shape (f,)."""
+        """True for facets that contain the projection of the centre of mass; shape (f,)."""
         is_stable = np.ones(len(self.normals), dtype=bool)
         is_stable[self.sides[self.inward <= 0.0]] = False
         return is_stable
 
     @cached_property
     def saddles(self) -> BoolArray:
-        """True for edges with a saddle: edge and both facets contain the projection of the centre; shape (e,)."""
+        """True for edges with a saddle: edge and both facets contain a projection of the centre of mass; shape (e,)."""
         is_saddle: BoolArray = (self.inward > 0.0).all(axis=1) & (self.beyond[:, 0] < 0.0) & (self.beyond[:, 1] > 0.0)
         return is_saddle
 
     @cached_property
     def summits(self) -> BoolArray:
-        """True for vertices with a summit: farther from the centre than all nearby points; shape (n,)."""
+        """True for vertices with a summit: farther from the centre of mass than all nearby points; shape (n,)."""
         is_summit = np.zeros(len(self.vertices), dtype=bool)
         is_summit[self.ends] = True
         is_summit[self.ends[self.beyond * np.array([-1.0, 1.0]) <= 0.0]] = False
@@ -120,7 +120,7 @@ class Polytope:
         return corner[turned], self.sides[edge, 1 - side][turned], first
 
     def descent(self, vertex: int, down: FloatArray) -> int:
-        """Return the stable facet at the end of the steepest descent of the centre, from a contact on a vertex."""
+        """Return the stable facet after the steepest descent of the centre of mass from a contact on a vertex."""
         # `vertex` is the lowest vertex for the downward unit vector `down` in the body's frame
         return self.rolled(int(self._swung(np.array([vertex]), np.asarray(down)[None])[0]))
 
@@ -158,7 +158,7 @@ class Polytope:
 
     @cached_property
     def _facing(self) -> BoolArray:
-        """True if the projection of the centre leaves the left or right facet through the edge; shape (e, 2)."""
+        """True if the projection of the centre of mass leaves the left or right facet at the edge; shape (e, 2)."""
         outside: BoolArray = (self.inward <= 0.0) & ((self.beyond[:, :1] <= 0.0) & (self.beyond[:, 1:] >= 0.0))
         return outside
 
@@ -192,7 +192,7 @@ class Polytope:
             summit = ~np.isfinite(gap)  # at a local maximum of the height, any direction leads down
             turned = down + np.where(summit, 0.0, gap)[:, None] * lever
             down = turned / np.linalg.norm(turned, axis=1, keepdims=True)
-            # in a valley between two vertices, continue along the edge, away from the projection of the centre
+            # in a valley between two vertices, continue along the edge, away from the projection of the centre of mass
             valley = ~summit & (self.beyond[edges, 0] < 0.0) & (self.beyond[edges, 1] > 0.0)
             flat = self.feet[edges] - down * (down * self.feet[edges]).sum(axis=1, keepdims=True)
             ahead = (self.normals[self.sides[edges]] * flat[:, None]).sum(axis=2)
@@ -207,7 +207,7 @@ class Polytope:
         raise GeometryError(_ENDLESS)
 
     def moved(self, shift: FloatArray) -> "Polytope":
-        """Return the polytope about a centre that is shifted from the present centre [m]."""
+        """Return the polytope about a centre of mass that is shifted from the present centre of mass [m]."""
         heights = self.heights - (self.normals * shift).sum(axis=1)
         other = Polytope(self.vertices - shift, self.normals, heights, self.ends, self.sides)
         other.__dict__.update({name: getattr(self, name) for name in ("along", "borders", "_by_facet")})
@@ -221,7 +221,7 @@ class Polytope:
 
 
 def polytope(points: FloatArray, centre: FloatArray, faces: IntArray | None = None) -> Polytope:
-    """Return the convex hull of points about a centre; coplanar facets, within 1e-7 of the size, are merged."""
+    """Return the convex hull of points about a centre of mass; coplanar facets, within 1e-7 of the size, are merged."""
     # `faces` are triangles of the surface; a convex surface is used without a search for the hull
     around = points - centre
     flat = FLAT * float(np.ptp(around, axis=0).max())

@@ -399,7 +399,7 @@ def _depth_of(body: Block | Section) -> list[str]:
 
 
 def _known_of(body: Block | Section, x: float, y: float) -> list[str]:
-    """Return the lines of the known values of a body; the centre is relative to the origin (-x, -y) [m]."""
+    """Return the lines of the known values of a body; the centre of mass is relative to the origin (-x, -y) [m]."""
     values = body.known
     lines = []
     if values is not None and values.centre is not None:

@@ -102,7 +102,7 @@ def solid_from_mesh(
     """Return the body from a surface mesh in a stable pose, with its repairs."""
     # The pose of the file is used if the centre of mass lies above the contact points. Otherwise the body is lowered
     # from there to a stable pose. In the pose of the file: base, contact points (x, y) [m]; base_tolerance, largest
-    # height of contact points above the lowest vertex [m]; known mass [kg], centre [m] and inertia [kg m2].
+    # height of contact points above the lowest vertex [m]; known mass [kg], centre of mass [m] and inertia [kg m2].
     path = Path(path)
     mesh = mesh_from_file(path, units=units, **options)
     with located(path.name, "file"):

@@ -123,8 +123,8 @@ def read_body(
 
     - ``up``: upward axis "z" or "y", or upward direction (x, y, z), in the file. The default is "z", for GLB "y".
     - ``repair``: allowed repairs "none", "safe" (default) or "all". Safe repairs change at most 1 % of the volume and
-      move the centre by at most 0.5 % of the size. They close open bottoms and small holes, smooth folds, and remove
-      small loose pieces.
+      move the centre of mass by at most 0.5 % of the size. They close open bottoms and small holes, smooth folds, and
+      remove small loose pieces.
     - ``surface``: "faces" of the mesh, "wrap" (a skin around the points), or convex "hull" of the points. The default
       is "faces", for files with points only "wrap".
     - ``wall``: wall thickness of a hollow body [m].

@@ -28,9 +28,9 @@ def known_moments(
     parts: Sequence[Part], part_moments: SolidMoments, centre: FloatArray | None, inertia: Any
 ) -> SolidMoments:
     """Return the moments of parts, with known values in place of the computed values."""
-    # The centre is in the frame of the parts [m]. The inertia is the tensor about the centre of mass, or the principal
-    # moments along x, y and z [kg m2]. For an unknown inertia, the second moment along each axis is scaled like the
-    # largest possible value ``m (c - low) (high - c)``. low and high are the ends of the body on this axis.
+    # The centre of mass is in the frame of the parts [m]. The inertia is the tensor about the centre of mass, or the
+    # principal moments along x, y and z [kg m2]. For an unknown inertia, the second moment along each axis is scaled
+    # like the largest possible value ``m (c - low) (high - c)``. low and high are the ends of the body on this axis.
     centre_of_mass = part_moments.centre if centre is None else centre
     boxes = np.array([part.box() for part in parts])
     low, high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
@@ -185,10 +185,10 @@ _CAUSE = "check the surface for self-intersections and inverted faces"
 
 def check_possible(parts: Sequence[Part]) -> None:
     """Refuse parts with moments that are impossible for masses inside their box and hull."""
-    # Conditions: The volume is > 0. The centre lies in the box, and for a mesh in the convex hull. The second moments J
-    # are not negative (triangle inequality of the inertia ``tr(J) 1 - J``). Along each axis they are at most
-    # ``m (c - low) (high - c)``, the limit for masses between low and high with the centre c (R. Bhatia, C. Davis, "A
-    # better bound on the variance", 2000).
+    # Conditions: The volume is > 0. The centre of mass lies in the box, and for a mesh in the convex hull. The second
+    # moments J are not negative (triangle inequality of the inertia ``tr(J) 1 - J``). Along each axis they are at most
+    # ``m (c - low) (high - c)``, the limit for masses between low and high with the centre of mass c (R. Bhatia, C.
+    # Davis, "A better bound on the variance", 2000).
     for number, part in enumerate(parts):
         fault = _impossible(part.moments(), part.box()) or _out_of_hull(part)
         if fault:

@@ -177,7 +177,7 @@ class Part:
         return self._with(self.shape.mirrored(), mirror[:, None] * self.rotation * mirror, mirror * self.translation)
 
     def moments(self) -> SolidMoments:
-        """Return mass, centre and second moments at the position of the part.
+        """Return mass, centre of mass and second moments at the position of the part.
 
         Returns
         -------

@@ -158,7 +158,7 @@ def check_self_intersection(
         raise GeometryError(
             "The surface intersects itself, mainly near {point}; {pairs} pair(s) of faces cross",
             point=describe(middle + crossings.location), pairs=crossings.pairs,
-            hint="repair the mesh in its own program, for instance by a boolean union",
+            hint="repair the mesh in the program that wrote it, for instance by a boolean union",
         )  # fmt: skip
     points = _beside(centred)
     turns = winding(points, centred)
@@ -173,7 +173,7 @@ def check_self_intersection(
             "The surface intersects itself or is partly inverted: its winding number near {point} is {turns}, and must "
             "be 0 or 1", turns=int(turns[worst]),
             point=describe(middle + points[worst]),
-            hint="repair the mesh in its own program, for instance by a boolean union",
+            hint="repair the mesh in the program that wrote it, for instance by a boolean union",
         )  # fmt: skip
     return crossings.complete
 

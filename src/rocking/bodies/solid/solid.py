@@ -71,15 +71,15 @@ class Solid:
     ------
     GeometryError
         If parts overlap or have impossible moments, the body does not touch the ground, the base has no area, the
-        centre of mass is not above the base, or the known centre or inertia is impossible for the body.
+        centre of mass is not above the base, or the known centre of mass or inertia is impossible for the body.
     InvalidValueError
         If a number is not finite, or mass and densities are both given.
 
     Notes
     -----
-    The default inertia for a known centre is that of the parts, scaled along each axis like the largest possible second
-    moment in the bounding box. `assumed` contains this assumption. The model ``ked-3d`` needs the mass distribution and
-    does not accept a body with known moments only.
+    The default inertia for a known centre of mass is that of the parts, scaled along each axis like the largest
+    possible second moment in the bounding box. `assumed` contains this assumption. The model ``ked-3d`` needs the mass
+    distribution and does not accept a body with known moments only.
 
     Examples
     --------
@@ -197,7 +197,7 @@ class Solid:
 
     @cached_property
     def local_moments(self) -> SolidMoments:
-        """Mass, centre and central second moments relative to `origin`, known or of the parts."""
+        """Mass, centre of mass and central second moments relative to `origin`, known or of the parts."""
         return self.known or combined(part.moments() for part in self.local_parts)
 
     @property

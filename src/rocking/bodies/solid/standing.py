@@ -65,7 +65,7 @@ def set_down(parts: Sequence[Part], pose: StablePose, size: float) -> tuple[list
 
 
 def stands(points: FloatArray, centre: FloatArray, tolerance: float) -> bool:
-    """Return True if the centre lies above the hull of all points within a tolerance above the lowest point [m]."""
+    """Return True if the centre of mass is above the hull of all points within a tolerance of the lowest point [m]."""
     low = points[points[:, 2] <= points[:, 2].min() + tolerance, :2]
     try:
         return hull(low).margin(centre[:2]) > 1e-12 * float(np.ptp(points, axis=0).max())
@@ -75,8 +75,9 @@ def stands(points: FloatArray, centre: FloatArray, tolerance: float) -> bool:
 
 def settled(points: FloatArray, centre: FloatArray) -> FloatArray:
     """Return the rotation from the present pose onto a stable facet of the hull."""
-    # The downward ray from the centre leaves the hull through a facet. The body is rotated onto this facet, repeatedly,
-    # until the ray leaves through the lowest facet. Each rotation lowers the centre from z / cos(angle) to z.
+    # The downward ray from the centre of mass leaves the hull through a facet. The body is rotated onto this facet,
+    # repeatedly, until the ray leaves through the lowest facet. Each rotation lowers the centre of mass from z /
+    # cos(angle) to z.
     from scipy.spatial import ConvexHull
 
     equations = ConvexHull(points - centre).equations

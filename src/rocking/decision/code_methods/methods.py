@@ -60,7 +60,7 @@ class BodySides:
 
     @property
     def symmetric(self) -> BoolArray:
-        """True for bodies with feet at equal distances from the centre."""
+        """True for bodies with feet at equal distances from the centre of mass."""
         right, left = self.half_width.T
         return np.asarray(np.isclose(right, left, rtol=1e-9, atol=0.0))
 
@@ -142,8 +142,8 @@ class CodeMethod(ABC):
     title: ClassVar[str]
     reference: ClassVar[str]  # source with clause or equation
     domain: ClassVar[str]
-    reading: ClassVar[str]  # reliability of the reading of the source
-    example: ClassVar[str] = "none of the source was at hand"  # example for a comparison with the source
+    reading: ClassVar[str]  # reliability of the source as it was read: original text, secondary source or example
+    example: ClassVar[str] = "none of the source was available"  # example for a comparison with the source
     vertical: ClassVar[VerticalMotion] = VerticalMotion.NOT_CONSIDERED
     vertical_rule: ClassVar[str] = ""  # rule of vertical motion, or reason of its exclusion
 

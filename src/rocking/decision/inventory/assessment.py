@@ -328,7 +328,7 @@ class _Assessor:
     def verdicts(
         self, items: Sequence[InventoryObject], product: Product, results: Arrays
     ) -> Iterator[Verdict | NotAssessed]:
-        """Yield the verdict of each object from outcomes, rotations over the slenderness angle, and loss of contact."""
+        """Yield the verdict of each object from outcomes, rotations / slenderness angle, and loss of contact."""
         shape = (len(product.motions), len(items), len(DIRECTIONS), len(self.labels))
         outcome = results["outcome"].reshape(shape)
         peak = np.abs(results["peak_rotation"].reshape(shape))

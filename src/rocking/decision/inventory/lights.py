@@ -44,14 +44,16 @@ LIGHT_LETTERS = {
 _MEANINGS = {
     Light.RED: Message("At least {red:.10g}% of the motions overturn the object."),
     Light.AMBER: Message(
-        "Neither red nor green: it rocks clearly, overturns under some motions, slides often, or there are too few "
-        "motions to exclude overturning."
+        "Neither red nor green: the object rocks clearly, overturns under some motions or slides often, or the number "
+        "of "
+        "motions is too small to exclude overturning."
     ),
     Light.GREEN: Message(
-        "No motion lifts the object. Or no motion overturns it, the upper end of the {level:.10g}% interval of the "
-        "overturning fraction is at most {green:.10g}% (needs at least {needed} motions), and its peak rotation is "
-        "below {rocking:g} of the slenderness angle in 84 % of the motions. Fewer than {red:.10g}% of the motions make "
-        "it slide."
+        "Two conditions must hold. (1) No motion causes uplift; or no motion overturns the object, the upper end of "
+        "the "
+        "{level:.10g}% interval of the overturning fraction is at most {green:.10g}% (at least {needed} motions), and "
+        "the peak rotation is below {rocking:g} of the slenderness angle in 84 % of the motions. (2) The object slides "
+        "in fewer than {red:.10g}% of the motions."
     ),
 }
 
@@ -65,7 +67,7 @@ class Thresholds:
     Parameters
     ----------
     rocking : float
-        Limit of green for the 84 % quantile of the peak rotation over the slenderness angle [-].
+        Limit of green for the 84 % quantile of the peak rotation / slenderness angle [-].
     overturning_green : float
         Limit of green for the upper end of the interval of the overturning fraction [-].
     overturning_red : float
@@ -155,7 +157,7 @@ class Thresholds:
         count : int
             Number of computed motions, at least one [-].
         high_rotation : float or None
-            The 84 % quantile of the peak rotation over the slenderness angle, None if overturned [-].
+            The 84 % quantile of the peak rotation / slenderness angle, None if overturned [-].
         failed : int
             Number of motions that could not be computed; green requires 0 [-].
         slid : int
@@ -216,9 +218,9 @@ class Thresholds:
         }  # fmt: skip
         return [
             say(
-                "These fractions apply to a medium consequence of a fall. They are {green_low:.10g}% and "
-                "{red_low:.10g}% for a low, {green_high:.10g}% and {red_high:.10g}% for a high consequence (needs at "
-                "least {needed_high} motions).",
+                "These limits for green and red apply to a medium consequence of a fall. For a low consequence the "
+                "limits are {green_low:.10g}% and {red_low:.10g}%. For a high consequence the limits are "
+                "{green_high:.10g}% and {red_high:.10g}%, and green requires at least {needed_high} motions.",
                 needed_high=high.needed,
                 **shares,
             ),
@@ -227,5 +229,5 @@ class Thresholds:
 
     @property
     def needed(self) -> int:
-        """Smallest number of motions, all with uplift and none with overturning, that can give green [-]."""
+        """Smallest number of motions for a green rating if all motions cause uplift and no motion overturns [-]."""
         return math.ceil(math.log(0.5 * (1.0 - self.level)) / math.log(1.0 - self.overturning_green))  # Eq. 187

@@ -205,8 +205,8 @@ class InventoryObject:
         Returns
         -------
         Solid
-            The solid of the object, or a box or cylinder with uniform masses below and above the centre; a round body
-            narrows to a smaller base at 45 degrees.
+            The solid of the object, or a box or cylinder with uniform masses below and above the centre of mass; a
+            round body narrows to a smaller base at 45 degrees.
 
         Raises
         ------
@@ -232,14 +232,14 @@ class InventoryObject:
         return Solid([low, high.moved(0.0, 0.0, middle)])
 
     def _turned(self) -> Solid:
-        """Return a cylinder that narrows to its base at 45 degrees, below half the height of its centre."""
+        """Return a cylinder that narrows to its base at 45 degrees, below half the height of its centre of mass."""
         (middle, above), _ = self._halves()
         flare = min(0.5 * (self.width - self.base("width")), 0.5 * middle)
         low = [Part(cylinder(self.width, middle - flare)).moved(0.0, 0.0, flare)]
         if flare > 0.0:
             low.append(Part(frustum(self.base("width"), self.width, flare)))
         below = Solid(low)
-        # densities of both halves for which the common centre is at the middle
+        # densities of both halves for which the common centre of mass is at the middle
         dense = 0.5 * above / (below.mass / DEFAULT_DENSITY)
         light = (middle - below.centre[2]) / (0.25 * math.pi * self.width**2 * above)
         most = max(dense, light)

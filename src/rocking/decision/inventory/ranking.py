@@ -31,8 +31,8 @@ _TITLES = {
     "overturned": Message("overturned"),
     "low": Message("overturned, low [%]"),
     "high": Message("overturned, high [%]"),
-    "median": Message("median rotation / angle"),
-    "quantile": Message("84 % quantile of rotation / angle"),
+    "median": Message("median of peak rotation / slenderness angle"),
+    "quantile": Message("84 % quantile of peak rotation / slenderness angle"),
     "others": Message("rating with other models"),
     "words": Message("description"),
     "advice": Message("recommendation"),
@@ -55,10 +55,10 @@ PLAN_TITLES = (
 _WORDS = COLUMNS.index("words")
 
 PLAN_NOTE = Message(
-    "A wider base extends equally on both sides; mass and moment of inertia about the centre do not change. "
-    "Ballast at the floor lowers the centre; its mass and inertia are included. Anchors, body and floor are rigid. "
-    "The anchors of one edge pull vertically, and the other edge is the pivot. No safety factor is included. The "
-    "largest allowed shaking is a percentage of the shaking here; it applies if the object is moved."
+    "A wider base extends equally on both sides. Mass and moment of inertia about the centre of mass do not change. "
+    "Ballast at the floor lowers the centre of mass. The mass and inertia of the ballast are included. Anchors, body "
+    "and floor are rigid. The anchors of one edge pull vertically, and the other edge is the pivot. No safety factor "
+    "is included. If the object is moved, the largest allowed PGA is a percentage of the PGA at the present location."
 )
 """Definition of the measures of the plan."""
 
@@ -118,9 +118,9 @@ _LIMITS = (
         "rocking in both directions, twisting and rolling on the rim of a round base are not computed."
     ),
     Message(
-        "Each direction is a body of the outer size on the base of the list. The default height of the centre of mass"
-        " is half the height. With a friction or a body file the object moves in three dimensions, by default with the "
-        "default restitution model; no measurement exists for this case."
+        "Each direction is computed as a plane body with the outer dimensions and the base in the list. The default "
+        "height of the centre of mass is half the height. An object with a friction coefficient or a body file is "
+        "computed in 3D, by default with the default restitution model. No measurement exists for this case."
     ),
     Message(
         "By default the coefficient of restitution is uncertain: it is sampled for each motion from the calibrated "
@@ -535,7 +535,7 @@ def _in_g(acceleration: float) -> str:
 
 
 def _base(verdict: Verdict, assessment: Assessment) -> str:
-    """Return the advice with the smallest base without uplift, from ``g b / h`` at the same centre height."""
+    """Return the advice with the smallest base without uplift, from ``g b / h`` without a change of the height h."""
     say, way, peak = words_of(assessment), verdict.worse.direction, assessment.hazard.peak()
     now = verdict.item.base(way)
     # the smallest size above the limit of uplift

@@ -33,7 +33,7 @@ class SpatialObject:
         self._first = slenderest(item).as_solid()  # variant with the smallest uplift acceleration
 
     def results(self, restitution: Any, motions: IntArray, scale: float) -> tuple[np.ndarray, FloatArray]:
-        """Return outcomes, and peak rotations over the slenderness angle, of selected motions in both directions."""
+        """Return outcomes, and peak rotations / slenderness angle, of selected motions in both directions."""
         outcome, ratio = np.zeros((len(motions), 2), np.int64), np.zeros((len(motions), 2))
         for own, rows in self.histories(restitution, motions, scale):
             arrays = results_of(rows, threads=self.threads)

@@ -66,4 +66,8 @@ def scale_words() -> str:
     for other in others:
         first = Message("{first}, {second}", {"first": first, "second": other})
     facts = {"terms": first, "source": SOURCE}
-    return Message("Likelihood terms: {terms}. The range of a term contains the 95 % interval. {source}.", facts)
+    return Message(
+        "Likelihood terms: {terms}. The range of each stated term contains the 95 % interval of the "
+        "probability. {source}.",
+        facts,
+    )

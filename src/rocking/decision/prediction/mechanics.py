@@ -150,9 +150,10 @@ MEASURED, COMPLEMENTARITY = ("measured", "calibrated"), "complementarity"
 FRICTION = ((0.3, 0.8), 0.01, 10.0, "-")
 CENTRE = ((0.97, 1.03), 0.5, 1.5, "-")
 FRICTION_REASON = Message(
-    "dry stone, concrete, wood and metal: EN 12812 and BS 5975 differ by this much for the same pair of materials"
+    "dry stone, concrete, wood and metal: for the same pair of materials, EN 12812 and BS 5975 differ as much as the "
+    "ends of this range"
 )
-CENTRE_REASON = Message("factor on the height of the centre of mass: the mass is rarely homogeneous")
+CENTRE_REASON = Message("factor on the height of the centre of mass: the density of a body is rarely uniform")
 AZIMUTH_REASON = Message("the orientation of the body to the two components is unknown")
 DENSITY_REASON = Message(
     "a factor on the density does not change the rotation; the input 'centre' represents non-uniform density"

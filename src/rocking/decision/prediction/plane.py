@@ -207,7 +207,7 @@ class SampledInPlane(SampledBodies):
 
 
 def _moved(levers: FloatArray, offset: FloatArray, height: FloatArray, slope: FloatArray) -> FloatArray:
-    """Return the levers of both feet [m] for a centre offset to the right [m] on a descent to the right [rad].
+    """Return the levers of both feet [m] for a centre of mass offset to the right [m] on a descent to the right [rad].
 
     The slenderness angles from the vertical are exact. The distance between the feet is exact to first order. The
     plumb line stays within 90 % of the nearer lever.

@@ -29,7 +29,10 @@ class StandingShape:
 
 
 class SampledShapes:
-    """Shapes of a body. The hull is computed once per base, because a moved centre changes no vertex of the hull."""
+    """Shapes of a body.
+
+    The hull is computed once per base, because a moved centre of mass changes no vertex of the hull.
+    """
 
     def __init__(self, solid: Solid, pose: StablePose, inertia: FloatArray) -> None:
         equilibria, rotation = solid.equilibria(), pose.rotation
@@ -40,7 +43,7 @@ class SampledShapes:
         self._shapes: dict[tuple[float, ...], StandingShape] = {}
 
     def of(self, base: float, centre: float, offset: tuple[float, ...] = (0.0, 0.0)) -> StandingShape:
-        """Return the shape with a base [m], a factor on the height of the centre, and an offset of the centre [m]."""
+        """Return the shape with a base [m], and the centre of mass with a factor on its height and an offset [m]."""
         key = (base, centre, *offset)
         if key not in self._shapes:
             if base not in self._hulls:

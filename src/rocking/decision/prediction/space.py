@@ -146,7 +146,7 @@ class SampledInSpace(SampledBodies):
         text = Message("{low:.3f} to {high:.3f} over the edge nearest to the centre of mass in 95 % of samples", ends)
         if (k == 1.0).any():
             text = Message(
-                "{words}, of which {share} lose more energy than Housner's impact and are limited to it",
+                "{words}, {share} of the samples are limited to the energy loss of Housner's impact",
                 {"words": text, "share": percent(float((k == 1.0).mean()))},
             )
         return k, as_measured(text, extrapolated=distribution.extrapolated)

@@ -62,7 +62,10 @@ class HullBody:
         return cls(points, moments.mass, moments.centre, moments.inertia, mass_distribution, solid.local_base)
 
     def moved(self, shift: FloatArray) -> "HullBody":
-        """Return the body with its centre of mass moved [m]. Vertices and inertia about the centre do not change."""
+        """Return the body with its centre of mass moved [m].
+
+        Vertices and inertia about the centre of mass do not change.
+        """
         hull = self.hull.moved(shift)
         _check_inside(self.centre + shift, hull)
         body: HullBody = object.__new__(HullBody)
@@ -101,12 +104,12 @@ class HullBody:
 
     @cached_property
     def facets(self) -> list[Vector]:
-        """Facets as points of the dual hull: outward unit normals over distances from the centre [1/m]."""
+        """Facets as points of the dual hull: outward unit normals / distances from the centre of mass [1/m]."""
         return list(map(tuple, (self.hull.normals / self.hull.heights[:, None]).tolist()))
 
     @cached_property
     def poses(self) -> list[int]:
-        """Index of the stable pose to which the body rolls from each facet; pose 0 has the lowest centre."""
+        """Index of the stable pose to which the body rolls from each facet; pose 0 has the lowest centre of mass."""
         hull = self.hull
         order = np.lexsort((np.arange(len(hull.heights)), hull.heights))
         number = {int(facet): k for k, facet in enumerate(order[hull.stable[order]])}

@@ -27,11 +27,12 @@ from rocking.dynamics.frictional.motion import (
 from rocking.dynamics.frictional.state import HullState
 from rocking.outcome import Status
 
-STRIKES = 5e-10  # speed over sqrt(g size) above which a history starts with an impact
+STRIKES = 5e-10  # speed / sqrt(g size) above which a history starts with an impact
 LADDER = (1e-11, 1e-9, 1e-7, 1e-5)
 PILED, _STUCK = 30, 200
-_CROWD, _CROWDED = 12, 1e-2  # largest number of changes of contact within a duration, given over sqrt(size / g)
-# limits of converging vertices in an accumulation: gap over the size, and opening speed over sqrt(g size)
+# largest number of changes of contact within a duration; unit of the duration: sqrt(size / g)
+_CROWD, _CROWDED = 12, 1e-2
+# limits of converging vertices in an accumulation: gap / size, and opening speed / sqrt(g size)
 _GATHERED, _GATHERING = 1e-7, 1e-4
 
 

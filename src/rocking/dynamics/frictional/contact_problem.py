@@ -49,7 +49,7 @@ class Problem:
 
     body: HullBody
     axes: Frame  # axes of the ground in those of the body
-    linear: Vector  # acceleration of the centre without contact, or velocity before the impact, in body axes
+    linear: Vector  # acceleration of the centre of mass without contact, or velocity before the impact, in body axes
     angular: Vector
     friction: float
     bias: dict[int, Vector] = field(default_factory=dict)  # w x (w x r) of each vertex; empty in impacts

@@ -85,7 +85,7 @@ class HullEngine(HullImpacts):
         self.history.sliding_distance += span * max(paths, default=0.0)
 
     def _rest(self) -> None:
-        """Keep the body at rest to the end of the stretch, or until the ground motion moves the body."""
+        """Keep the body at rest to the end of the segment, or until the ground motion moves the body."""
         if self.stretch >= self.ground.motion.count:
             self._hold(self.until)
             return

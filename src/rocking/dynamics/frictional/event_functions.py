@@ -8,16 +8,16 @@ from rocking.dynamics.frictional.body import HullBody
 from rocking.dynamics.frictional.ground import HullGround, added, applied, dot, frame, length
 from rocking.dynamics.frictional.motion import HullMode, Rates, State, StepResult, gap, point_velocity, slip_direction
 
-CLOSED, _GRAZED = 1e-11, 1e-14  # gaps over the size: limit for simultaneous landings, and limit for one landing
-_FORCE = 1e-11  # acceleration over gravity below which a force counts as zero
+CLOSED, _GRAZED = 1e-11, 1e-14  # gaps / size: limit for simultaneous landings, and limit for one landing
+_FORCE = 1e-11  # acceleration / gravity below which a force counts as zero
 _SLIP = 5e-6
 MAX_ITERATIONS = 80
 
 
 def stops_at(tolerance: float) -> float:
-    """Return the speed over sqrt(g size) at which sliding stops. A slower vertex may stick.
+    """Return the speed / sqrt(g size) at which sliding stops. A slower vertex may stick.
 
-    The square of this speed is the energy loss of a stop over m g size.
+    The square of this speed is the energy loss of a stop / (m g size).
 
     >>> stops_at(1e-12), stops_at(1e-6)
     (5e-06, 0.001)

@@ -113,7 +113,7 @@ class HullGround:
     # infinite plane [m]
     shelf: tuple[float, float] | None = None
     gravity: float = conventions.g  # [m/s2]
-    motion: SpatialGround = field(init=False, repr=False)  # the three components, with common stretches of time
+    motion: SpatialGround = field(init=False, repr=False)  # the three components, with common segments of time
     level: Frame = field(init=False, repr=False)  # level axes to axes of the plane
 
     def __post_init__(self) -> None:

@@ -49,7 +49,7 @@ class HullHistory:
     fell_off: bool = False  # True after a fall from the shelf
     initial_facet: int = 0  # facet on which the body stood before the tilt
     pose: int = -1  # stable pose at the end, or to which the body moves
-    overturning_time: float = math.nan  # last time at which the centre left the initial pose [s]
+    overturning_time: float = math.nan  # last time at which the centre of mass left the initial pose [s]
     direction: float = math.nan  # direction of tilt at that time, from x towards y [rad]
     min_cosine: float = 1.0  # smallest cosine of the angle from the initial pose [-]
     peak_time: float = 0.0  # time of the smallest cosine [s]

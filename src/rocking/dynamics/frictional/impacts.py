@@ -26,7 +26,7 @@ from rocking.dynamics.frictional.motion import (
 )
 from rocking.dynamics.frictional.restitution import impulse_point, nearest
 
-_FLAT = 1e-6  # gap over the size below which all corners of a facet land together
+_FLAT = 1e-6  # gap / size below which all corners of a facet land together
 
 
 class HullImpacts(ContactChoice):

@@ -31,8 +31,8 @@ from rocking.portable import applied
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-FINE = 0.05  # time between samples if there is no record, over sqrt(size / g)
-_NO_SLIP = 1e-6  # sliding distance over the size; results do not mention a smaller distance
+FINE = 0.05  # time between samples without a record, divided by sqrt(size / g)
+_NO_SLIP = 1e-6  # sliding distance / size; results do not mention a smaller distance
 
 HULL_IMPACT = np.dtype([("time", "f8"), ("energy_before", "f8"), ("energy_after", "f8"), ("vertices", "U64")])
 """Fields of `HullResponse.impacts`: time [s], kinetic energy before and after [J], vertices in contact after."""
@@ -213,7 +213,7 @@ class HullResponse(ResponseBase):
 
     @property
     def pose(self) -> int:
-        """Index of the stable pose at the end, or to which the body moves; 0 has the lowest centre."""
+        """Index of the stable pose at the end, or to which the body moves; 0 has the lowest centre of mass."""
         return self.trajectory.pose
 
     @property

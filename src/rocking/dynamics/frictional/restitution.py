@@ -202,7 +202,7 @@ class RestitutionOnHull(ConstantRestitution):
         )  # fmt: skip
 
     def content(self) -> dict[str, Any]:
-        """Return mass, centre, inertia and hull of the body, and the model, as plain values."""
+        """Return mass, centre of mass, inertia and hull of the body, and the model, as plain values."""
         hull_body = self.on_hull
         arrays = {"centre": hull_body.centre, "inertia": hull_body.inertia, "hull": hull_body.hull.vertices}
         return {"model": self.model, "mass": hull_body.mass, **{name: hash_of(array) for name, array in arrays.items()}}

@@ -14,7 +14,7 @@ class HullSettings(Settings):
     gravity, most_events
         See `Settings`; the same for all mechanics.
     rest_speed : float
-        Speed over sqrt(g size) [-]. A body comes to rest if its energy over m g size is below the square of this speed.
+        Speed / sqrt(g size) [-]. A body comes to rest if its energy / (m g size) is below the square of this speed.
         The square is 1e-11 or more, because smaller gaps count as closed.
     tolerance : float
         Bound on the local error of a step of order 5 [-]. Errors are relative to the size of the body, to one radian,

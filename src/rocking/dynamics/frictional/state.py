@@ -30,8 +30,8 @@ from rocking.dynamics.frictional.restitution import law_of
 from rocking.dynamics.frictional.settings import HullSettings
 from rocking.outcome import Outcome, Status
 
-_SLIDES = 1e-4  # speed over sqrt(g size); a slower vertex keeps its initial direction of sliding
-_AHEAD = 1e-6  # delay over sqrt(size / g); the ground acceleration after this delay determines the next mode
+_SLIDES = 1e-4  # speed / sqrt(g size); a slower vertex keeps its initial direction of sliding
+_AHEAD = 1e-6  # delay / sqrt(size / g); the ground acceleration after this delay determines the next mode
 
 
 class _Watched(NamedTuple):

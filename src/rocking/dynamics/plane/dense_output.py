@@ -168,7 +168,7 @@ Curves of shorter intervals are accurate to 1e-11.
 """
 
 _ORDER = 16
-# bound on the sixth-power term within a piece, over the slenderness angle
+# bound on the sixth-power term within a piece, divided by the slenderness angle
 _TOLERANCE = 1e-11
 _MAX_PIECES = 100_000
 _ROUNDING = 1e-12
@@ -195,7 +195,7 @@ def _inner_states(  # noqa: PLR0917 - a history and its inputs
         return shifted((scale / g * motion[stretch]).tolist(), at, width)
 
     def terms_of(time: float, left: float, side: int, u: float, rate: float) -> list[float]:
-        """Return the Taylor series of the motion over the remainder of a stretch."""
+        """Return the Taylor series of the motion over the remainder of a segment."""
         stretch = min(int((time + 0.5 * left) / step), segments.count - 1)
         at, width = time / step - stretch, left / step
         push = [side * c for c in coefficients(segments.horizontal, stretch, at, width)]
@@ -207,7 +207,7 @@ def _inner_states(  # noqa: PLR0917 - a history and its inputs
     def states(
         start: tuple[float, float, float], side: int, until: float, *, to_the_ground: bool
     ) -> list[tuple[float, float, float]]:
-        """Return states at spacings short enough for quintics, not beyond the end of the stretch."""
+        """Return states at spacings short enough for quintics, not beyond the end of the segment."""
         alpha = parameters.side(side).slenderness_angle
         time, rotation, velocity = start
         u, rate = alpha - side * rotation, -side * velocity

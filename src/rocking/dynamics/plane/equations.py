@@ -25,7 +25,7 @@ def angular_acceleration(
 
 
 def energy(rotation: Any, angular_velocity: Any, alpha: Any, p: Any, *, linear: bool = False) -> FloatArray:
-    """Return energy above rest over m g R, ``theta'^2 / (2 p^2) + cos(alpha - |theta|) - cos(alpha)`` [-]."""
+    """Return energy above rest / (m g R), ``theta'^2 / (2 p^2) + cos(alpha - |theta|) - cos(alpha)`` [-]."""
     size, angle = np.abs(rotation), np.asarray(alpha)
     kinetic = 0.5 * np.square(np.asarray(angular_velocity) / p)
     if linear:
@@ -35,7 +35,7 @@ def energy(rotation: Any, angular_velocity: Any, alpha: Any, p: Any, *, linear: 
 
 
 def energy_at_top(alpha: Any, *, linear: bool = False) -> FloatArray:
-    """Return the energy barrier of overturning over m g R, ``1 - cos(alpha)`` [-]."""
+    """Return the energy barrier of overturning / (m g R), ``1 - cos(alpha)`` [-]."""
     angle = np.asarray(alpha)
     return np.asarray(0.5 * np.square(angle) if linear else 2.0 * np.square(np.sin(0.5 * angle)))  # Eq. 31
 
@@ -43,7 +43,7 @@ def energy_at_top(alpha: Any, *, linear: bool = False) -> FloatArray:
 def turning_rotation(energy_over_mgr: Any, alpha: Any, *, linear: bool = False) -> FloatArray:
     """Return the amplitude of a freely rocking body.
 
-    `energy_over_mgr` is the energy above rest over m g R [-], up to the energy at the top. Returns |theta| [rad].
+    `energy_over_mgr` is the energy above rest / (m g R) [-], up to the energy at the top. Returns |theta| [rad].
 
     >>> round(turning_rotation(energy(0.05, 0.0, 0.2, 3.0), 0.2).item(), 12)
     0.05
@@ -101,9 +101,9 @@ class Event:
 
 @dataclass(frozen=True)
 class Trajectory:
-    """A history: states at the ends of all stretches of the motion, and events."""
+    """A history: states at the ends of all segments of the motion, and events."""
 
-    # rotation, angular_velocity: theta [rad] and theta' [rad/s]; NaN after overturning; shape (stretches + 1,)
+    # rotation, angular_velocity: theta [rad] and theta' [rad/s]; NaN after overturning; shape (segments + 1,)
     rotation: FloatArray
     angular_velocity: FloatArray
     events: list[Event] = field(repr=False)  # in order of time
@@ -119,7 +119,7 @@ class Trajectory:
     impacts: int  # impacts, uplifts: their numbers
     uplifts: int
     truncation: float  # sum of the truncation errors of the steps [rad]; not a measure of the global error
-    # smallest normal contact force during rocking, over the weight m g, up to the overturning time, at samples, uplifts
+    # smallest normal contact force during rocking / (m g), up to the overturning time, at samples, uplifts
     # and impacts; a negative force is tensile; NaN without rocking [-]
     least_force: float
     # largest ratio of horizontal to normal force at the same instants [-]; infinite if contact is lost

@@ -1,4 +1,4 @@
-"""Restoring moments of a body over the stretches of a motion: times of uplift, and decay of impacts to rest."""
+"""Restoring moments of a body over the segments of a motion: times of uplift, and decay of impacts to rest."""
 
 import math
 from collections.abc import Mapping
@@ -16,17 +16,17 @@ NO_MORE: Mapping[int, float] = MappingProxyType({1: 0.0, -1: 0.0})
 
 @dataclass(frozen=True)
 class Push:
-    """Ground accelerations over gravity, as polynomials of the stretches."""
+    """Ground acceleration / gravity, as polynomials of the segments."""
 
-    step: float  # duration of a stretch [s]
+    step: float  # duration of a segment [s]
     horizontal: FloatArray  # a_x / g [-]; shape (n, degree + 1)
     vertical: FloatArray  # a_z / g [-]; shape (n, degree + 1)
 
 
 class RestoringMoments:
-    """Restoring moments of a body over stretches.
+    """Restoring moments of a body over segments.
 
-    `more` contains constant moments of restraints by side, over m g R [-].
+    `more` contains constant moments of restraints by side / (m g R) [-].
     """
 
     def __init__(
@@ -50,11 +50,11 @@ class RestoringMoments:
         )
 
     def held(self, sign: int, stretch: int, tau: float) -> float:
-        """Return the restoring moment on a side over m g R [-]; positive as long as there is no uplift."""
+        """Return the restoring moment on a side / (m g R) [-]; positive as long as there is no uplift."""
         return value(self.moments[sign][stretch].tolist(), tau)
 
     def next_uplift(self, stretch: int, tau: float) -> tuple[int, float, int] | None:
-        """Return the next uplift: stretch, time within the stretch, and side; None without uplift."""
+        """Return the next uplift: segment, time within the segment, and side; None without uplift."""
         for k in self._candidates[np.searchsorted(self._candidates, stretch) :].tolist():
             start = tau if k == stretch else 0.0
             right, left = self._release(1, k, start), self._release(-1, k, start)
@@ -69,11 +69,11 @@ class RestoringMoments:
         return None
 
     def until_jump(self, stretch: int) -> int:
-        """Return the number of stretches up to the end of the motion, or up to a jump of the record to rest."""
+        """Return the number of segments up to the end of the motion, or up to a jump of the record to rest."""
         return int(self._stops[np.searchsorted(self._stops, stretch, side="right")]) - stretch
 
     def window(self, stretch: int, tau: float, stretches: int) -> tuple[dict[int, float], float, float] | None:
-        """Return bounds of the restoring moments from an instant to the end of the last stretch; None if uplift."""
+        """Return bounds of the restoring moments from an instant to the end of the last segment; None if uplift."""
         # smallest restoring moment on each side [-], bound on the total variation of the logarithm of the moments [-],
         # and bound on the change of the moments with the rotation [1/rad]
         rows = slice(stretch, stretch + stretches)
@@ -107,7 +107,7 @@ class RestoringMoments:
 
 
 def _extent(rows: FloatArray, tau: float) -> tuple[float, float, float]:
-    """Return minimum, maximum and variation of a motion over stretches, from tau in the first. Exact for lines."""
+    """Return minimum, maximum and variation of a motion over segments, from tau in the first. Exact for lines."""
     if rows.shape[1] == 2:
         values = np.concatenate([[value(rows[0].tolist(), tau)], rows.sum(axis=1)])
         return (float(values.min()), float(values.max()), float(np.abs(np.diff(values)).sum()))
@@ -118,7 +118,7 @@ def _extent(rows: FloatArray, tau: float) -> tuple[float, float, float]:
 
 
 def _jumps(lines: FloatArray) -> np.ndarray:
-    """Return True for every jump of a record between two stretches. In smooth motions, jumps count as variation."""
+    """Return True for every jump of a record between two segments. In smooth motions, jumps count as variation."""
     if lines.shape[1] > 2:
         return np.zeros(len(lines) - 1, dtype=bool)
     gap = np.abs(lines[:-1].sum(axis=1) - lines[1:, 0])
@@ -127,7 +127,7 @@ def _jumps(lines: FloatArray) -> np.ndarray:
 
 _LONGEST_WINDOW = 40.0
 _HEIGHTS = 0.1  # bound on the part of the logarithm of the gain that is due to the rocking amplitudes
-NOTHING = 1e-9  # slower speeds over p alpha count as rest
+NOTHING = 1e-9  # lower values of speed / (p alpha) count as rest
 
 
 def comes_to_rest(  # noqa: PLR0917 - the state in the order of the engine
@@ -143,7 +143,7 @@ def comes_to_rest(  # noqa: PLR0917 - the state in the order of the engine
     # The half cycles do not overlap in time, so that the total variation of the moments bounds the gain of speed.
     # The sum of the durations is a geometric series. The proof is in docs/theory/rest.md.
     # after: speed after the impact [rad/s]
-    # rest_speed: largest speed over p alpha for which rest is checked [-]; always checked below `NOTHING`
+    # rest_speed: largest speed / (p alpha) for which rest is checked [-]; always checked below `NOTHING`
     side = parameters.side(sign)
     unit = side.frequency_parameter * side.slenderness_angle
     held = ground.held(sign, stretch, tau)
@@ -152,7 +152,7 @@ def comes_to_rest(  # noqa: PLR0917 - the state in the order of the engine
     other, across = parameters.side(-sign), ground.held(-sign, stretch, tau)
     if not (after <= rest_speed * unit and held > 0.0 and across > 0.0):
         return False
-    # times in units of stretches; the half cycles under the present moments give an estimate of the time to rest
+    # times in units of segments; the half cycles under the present moments give an estimate of the time to rest
     step = ground.push.step
     p2, p2_other = ((k.frequency_parameter * step) ** 2 for k in (side, other))
     r, q = parameters.largest(sign), parameters.largest(-sign)

@@ -79,7 +79,7 @@ def library_of(segments: Sequence[Segments]) -> Any:
 def _write_motion(segments: Segments, rows: FloatArray) -> tuple[int, int, int]:
     """Write a motion into the first rows.
 
-    Return the numbers of rows, stretches before a jump, and stretches after it.
+    Return the numbers of rows, segments before a jump, and segments after it.
     """
     count, still = segments.count, 0
     if segments.degree > 1:
@@ -118,7 +118,7 @@ def _allowed(samples: FloatArray) -> float:
 
 
 def _jump(components: list[FloatArray], samples: FloatArray, step: float) -> int:
-    """Return the number of stretches before the jump to rest. Raise an error for other jumps."""
+    """Return the number of segments before the jump to rest. Raise an error for other jumps."""
     if not all(np.isfinite(x).all() for x in (*components, samples)):
         raise InvalidValueError(_NOT_FINITE)
     columns = zip(components, samples.T, strict=False)

@@ -60,13 +60,13 @@ class Reference:
         self.stretch, self.tau = 0, 0.0
         self.impacts = self.uplifts = 0
         self.peak, self.peak_time, self.fastest, self.truncation = 0.0, 0.0, 0.0, 0.0
-        self.forces = self.forces_before = (math.inf, 0.0)  # smallest normal force over m g, largest friction demand
+        self.forces = self.forces_before = (math.inf, 0.0)  # smallest normal force / (m g), largest friction demand
         self.over_time = math.nan
 
         def extreme_to_end(extreme: FloatArray, reduce: np.ufunc) -> FloatArray:
             return np.append(reduce.accumulate(extreme[::-1])[::-1], 0.0)
 
-        # from every stretch to the end: largest push in both directions, and smallest gravity
+        # from every segment to the end: largest push in both directions, and smallest gravity
         h, v = self.push.horizontal, self.push.vertical
         self.later_high = extreme_to_end(np.maximum(h[:, 0] + np.maximum(h[:, 1:], 0.0).sum(axis=1), 0.0), np.maximum)
         self.later_low = extreme_to_end(np.minimum(h[:, 0] + np.minimum(h[:, 1:], 0.0).sum(axis=1), 0.0), np.minimum)
@@ -98,7 +98,7 @@ class Reference:
         return self._impact(self.rate, 0.0) if upright and self.rate > 0.0 else None
 
     def _step(self) -> _Ended | None:
-        """Advance to the end of the stretch, or to an earlier event."""
+        """Advance to the end of the segment, or to an earlier event."""
         remaining = (1.0 - self.tau) * self.push.step
         push = shifted(self.push.horizontal[self.stretch].tolist(), self.tau, 1.0 - self.tau)
         weight = shifted(self.push.vertical[self.stretch].tolist(), self.tau, 1.0 - self.tau)
@@ -261,13 +261,13 @@ class Reference:
         return (self.stretch + self.tau) * self.push.step
 
     def _ground_at(self, stretch: int, tau: float) -> tuple[float, float]:
-        """Return the push towards the foot in contact, and the effective weight, both over gravity [-]."""
+        """Return the push towards the foot in contact, and the effective weight, both divided by gravity [-]."""
         push = value(self.push.horizontal[stretch].tolist(), tau)
         lift = value(self.push.vertical[stretch].tolist(), tau)
         return self.side * push, 1.0 + lift
 
     def _note_force(self, u: float, rate: float, push: float, weight: float) -> None:
-        """Update the extreme forces over the weight: (1 + a_z / g) + z'' / g upwards, a_x / g + x'' / g horizontal."""
+        """Update the extremes of force / weight: (1 + a_z / g) + z'' / g upwards, a_x / g + x'' / g horizontal."""
         sine, cosine = math.sin(u), math.cos(u)
         moment = weight * u + push if self.settings.linear else weight * sine + push * cosine  # u'' / p^2
         inertia_ratio, spin = self.parameters.side(self.side).inertia_ratio, rate / self._p

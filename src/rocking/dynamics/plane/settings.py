@@ -35,7 +35,7 @@ class PlaneSettings(Settings):
     linear : bool
         True for the slender-linear equations, in which the angle replaces its sine, and 1 replaces its cosine.
     rest_speed : float
-        Speed after an impact over p alpha [-]. After a slower impact, the remaining impacts are not computed one by
+        Speed after an impact / (p alpha) [-]. After a slower impact, the remaining impacts are not computed one by
         one: the engine sums them up to rest, if it is proven that they end before the body can rise again.
     longest_step : float
         Longest Taylor step of the fast engine, as the product of p and time [-].

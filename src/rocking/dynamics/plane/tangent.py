@@ -50,7 +50,7 @@ class Tangent:
 
     @property
     def growth(self) -> FloatArray:
-        """Largest growth of a difference in rotation and angular velocity over p since the start, shape (samples,)."""
+        """Largest growth of a difference in rotation and angular velocity / p since the start, shape (samples,)."""
         p = self.frequency_parameter
         a, b, c, d = (self.by_start * np.array([[1.0, p], [1.0 / p, 1.0]])).reshape(-1, 4).T
         squares = 0.5 * (a * a + b * b + c * c + d * d)  # largest singular value in closed form
@@ -58,13 +58,13 @@ class Tangent:
 
     @property
     def growth_rate(self) -> FloatArray:
-        """Logarithm of the growth over the time [1/s], shape (samples,): NaN at time 0, minus infinity after a rest."""
+        """Logarithm of the growth / time [1/s], shape (samples,): NaN at time 0, minus infinity after a rest."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.asarray(np.log(self.growth) / self.time)
 
     @property
     def relative_change(self) -> float:
-        """Relative change of the peak rotation over that of the motion [-]; NaN if the peak is at the start or end."""
+        """Relative changes: peak rotation / motion [-]; NaN if the peak is at the start or end."""
         peak = int(np.argmax(np.abs(self.rotation)))
         is_inside = 0 < peak < self.rotation.size - 1
         return float(abs(self.by_parameter["amplitude"][peak, 0] / self.rotation[peak])) if is_inside else np.nan
@@ -149,7 +149,7 @@ def _flows(response: "Response") -> FloatArray:
     stretch = np.clip((at + 0.5 * width).astype(np.int64), 0, segments.count - 1)
 
     def ground(motion: FloatArray | None) -> tuple[list[Any], list[Any]]:
-        """Return a ground acceleration over g, and its derivative by a factor on the frequency."""
+        """Return a ground acceleration / g, and its derivative by a factor on the frequency."""
         if motion is None:
             return [np.zeros_like(at)], [np.zeros_like(at)]
         columns: list[Any] = list((response.scale / settings.gravity * motion[stretch]).T)

@@ -1,7 +1,7 @@
 """The planar engine: Taylor series between events, event times exact to rounding, complementarity at events.
 
 A step ends at the next sample of the motion or earlier, so that no step crosses a kink of the motion. An event is a
-zero of a polynomial. A body at rest skips the stretches that cannot move the body.
+zero of a polynomial. A body at rest skips the segments that cannot move the body.
 """
 
 import math
@@ -170,7 +170,7 @@ class ContactEngine:
             self.tau = tau
 
     def _watch_top(self, series: ModeSeries, at: float) -> None:
-        """Record the passage of the centre over the foot."""
+        """Record the passage of the centre of mass over the foot."""
         side = 1 if value(series.rotation, at) > 0.0 else -1
         gap = -side * series.rotation
         gap[0] += self.base.slenderness_angle(side)
@@ -286,7 +286,7 @@ class ContactEngine:
     # ---- rest -------------------------------------------------------------------------------------------------------
 
     def _skip(self) -> bool:
-        """Keep the body at rest over stretches that cannot move the body. Return True if there were such stretches."""
+        """Keep the body at rest over segments that cannot move the body. Return True if there were such segments."""
         if not hasattr(self, "_excited"):
             self._excited = excited_stretches(self.base, self.push, self.lift, self.law.friction)
         index = int(np.searchsorted(self._excited, self.stretch))

@@ -95,7 +95,7 @@ def first_end(functions: list[EventFunction], stretch: float, tolerance: float) 
 
 
 def excited_stretches(base: PlaneBase, push: FloatArray, lift: FloatArray, friction: float) -> np.ndarray:
-    """Return stretches that may move a body at rest. `push` and `lift` are coefficients of a_x and g + a_z [m/s2]."""
+    """Return segments that may move a body at rest. `push` and `lift` are coefficients of a_x and g + a_z [m/s2]."""
     turn = push * base.height
     # Eq. 69
     margins = [lift * base.right + turn, lift * base.left - turn, friction * lift - push, friction * lift + push]

@@ -18,7 +18,7 @@ SAMPLED = (
     "impact_loss", "slid", "regime",
 )  # fmt: skip
 
-_LIGHT = 1e-9  # force over the weight; smaller forces are rounding errors, for which friction usage is not evaluated
+_LIGHT = 1e-9  # force / weight; smaller values are rounding errors, for which friction usage is not evaluated
 
 
 class SmoothPiece(NamedTuple):
@@ -45,7 +45,7 @@ class History:
     """The record of a history, per unit of mass."""
 
     engine: ClassVar[str] = "planar: Taylor series with events and complementarity"
-    count: int  # number of stretches of the motion; the number of samples is count + 1
+    count: int  # number of segments of the motion; the number of samples is count + 1
     gravity: float  # acceleration of gravity [m/s2]
     work: float = 0.0
     friction_loss: float = 0.0
@@ -55,14 +55,15 @@ class History:
     peak: float = 0.0
     replaced: int = 0  # number of impacts with Stronge's law instead of the requested law
     shocks: int = 0  # number of impacts without collision (Painleve)
-    last_x: float = math.nan  # displacement of the centre at the end [m]
+    last_x: float = math.nan  # displacement of the centre of mass at the end [m]
     pieces: list[SmoothPiece] = field(default_factory=list)
     blows: list[Blow] = field(default_factory=list)
     changes: list[tuple[float, Mode]] = field(default_factory=list)
     samples: FloatArray = field(init=False)
     status: Status = Status.GOOD
     lies: bool = False  # True if the body overturned
-    passed: float = math.nan  # last passage of the centre over a foot [s]; NaN if there is none, or after a return
+    # last passage of the centre of mass over a foot [s]; NaN if there is none, or after a return
+    passed: float = math.nan
     end: float = 0.0  # end of the history [s]
 
     def __post_init__(self) -> None:

@@ -101,7 +101,7 @@ def _sticking(inertia: float, x: list[float], z: list[float], ground: GroundSeri
 def _sliding(
     inertia: float, x: list[float], z: list[float], spin: list[float], ground: GroundSeries, pull: float
 ) -> Acceleration:
-    """Return theta'' from the moments about the centre with sliding friction, by a division of series."""
+    """Return theta'' from the moments about the centre of mass with sliding friction, by a division of series."""
     _, lift, unit = ground
     level: list[float] = []
     stiffness: list[float] = []
@@ -163,7 +163,7 @@ class ModeSeries:
     """Series of a mode. The time within the series is from 0 to 1."""
 
     unit: float  # duration [s]
-    rotation: FloatArray  # rotation, x, rise: theta [rad], x and rise of the centre [m]
+    rotation: FloatArray  # rotation, x, rise: theta [rad], x and rise of the centre of mass [m]
     x: FloatArray
     rise: FloatArray
     tangential: FloatArray  # total force of the ground to the right, per unit of mass [m/s2]

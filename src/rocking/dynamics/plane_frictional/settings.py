@@ -20,7 +20,7 @@ class ContactSettings(Settings):
     gravity, most_events
         See `Settings`; the same for all mechanics.
     rest_speed : float
-        Speed after an impact over sqrt(g R) [-]. A slower bounce or rocking motion ends at the impact, which loses the
+        Speed after an impact / sqrt(g R) [-]. A slower bounce or rocking motion ends at the impact, which loses the
         energy of this motion.
     tolerance : float
         Bound on the last two terms of a Taylor step, divided by the angle alpha and the size R [-].

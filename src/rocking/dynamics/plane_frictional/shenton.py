@@ -20,7 +20,7 @@ def friction_demand(body: Body, acceleration: float) -> float:
     body : Body
         The body.
     acceleration : float
-        Horizontal acceleration of the ground over gravity [-]. It must exceed b / h of the foot of rotation.
+        Horizontal acceleration of the ground / gravity [-]. It must exceed b / h of the foot of rotation.
 
     Returns
     -------
@@ -61,11 +61,11 @@ def regime_at_start(
     body : Body
         The body.
     acceleration : float
-        Horizontal acceleration of the ground, over gravity [-].
+        Horizontal acceleration of the ground / gravity [-].
     friction : float
         Coulomb's coefficient [-].
     vertical : float
-        Vertical acceleration of the ground, over gravity, upwards [-].
+        Vertical acceleration of the ground / gravity, positive upwards [-].
     gravity : float
         Acceleration of gravity [m/s2].
 
@@ -107,7 +107,7 @@ def analytic_regime(body: Body, acceleration: float, friction: float) -> Regime:
     body : Body
         The body.
     acceleration : float
-        Horizontal acceleration of the ground, over gravity [-].
+        Horizontal acceleration of the ground / gravity [-].
     friction : float
         Coulomb's coefficient [-].
 
@@ -134,7 +134,7 @@ def regime_map(body: Body, accelerations: FloatArray, frictions: FloatArray) -> 
     body : Body
         The body.
     accelerations, frictions : ndarray
-        Horizontal accelerations over gravity, and coefficients of friction [-].
+        Horizontal accelerations / gravity, and coefficients of friction [-].
 
     Returns
     -------

@@ -26,9 +26,9 @@ _HALF_PI = 0.5 * math.pi
 _TIE = 1e-11  # as a fraction of a step
 _ROUNDING, _MOST_AT_ONCE = 1e-9, 1000
 _AFTER = 30.0  # product of p and the time on ground at rest that determines the outcome
-_SHORTER, _SHORTEST = 1e-4, 1e-20  # as fractions of a stretch
+_SHORTER, _SHORTEST = 1e-4, 1e-20  # as fractions of a segment
 _INSTANTS = 32  # instants per step at which the contact with a wall is recorded
-_SINGULAR = 1e-14  # speed over p alpha near a turning point, for a damper with an exponent other than 1
+_SINGULAR = 1e-14  # speed / (p alpha) near a turning point, for a damper with an exponent other than 1
 
 
 class _Next(NamedTuple):
@@ -40,11 +40,11 @@ class _Next(NamedTuple):
 
 @dataclass(slots=True)
 class RestrainedTrajectory:
-    """A history: states at the ends of all stretches of the motion, and events."""
+    """A history: states at the ends of all segments of the motion, and events."""
 
-    rotation: FloatArray  # theta [rad], NaN after overturning; shape (stretches + 1,)
+    rotation: FloatArray  # theta [rad], NaN after overturning; shape (segments + 1,)
     angular_velocity: FloatArray  # theta' [rad/s]
-    elongation: FloatArray  # [m]; shape (stretches + 1, restraints)
+    elongation: FloatArray  # [m]; shape (segments + 1, restraints)
     force: FloatArray  # [N]
     restraint_work: FloatArray  # work done on restraints since the start [J]
     work: FloatArray  # work of the ground since the start [J]
@@ -65,7 +65,7 @@ class RestrainedTrajectory:
     engine: str = f"reference (Taylor, order up to {_ORDER})"
 
     def cut(self, count: int) -> None:
-        """Keep only the first `count` stretches."""
+        """Keep only the first `count` segments."""
         for name in ("rotation", "angular_velocity", "elongation", "force", "restraint_work", "work"):
             setattr(self, name, getattr(self, name)[: count + 1])
 
@@ -151,7 +151,7 @@ class RestrainedReference:
     # ---- one step ---------------------------------------------------------------------------------------------------
 
     def _step(self, width: float = 1.0) -> None:
-        """Advance by a part of the stretch, or to an earlier event."""
+        """Advance by a part of the segment, or to an earlier event."""
         width = min(width, 1.0 - self.tau)
         h, is_singular = width * self.push.step, self._is_singular()
         push = shifted(self.push.horizontal[self.stretch].tolist(), self.tau, width)
@@ -386,7 +386,7 @@ class RestrainedReference:
         return None if uplift is None else self._lift(uplift[1], uplift[2])
 
     def _lift(self, tau: float, side: int) -> None:
-        """Start an uplift at an instant of the stretch."""
+        """Start an uplift at an instant of the segment."""
         self.side = side
         self._move(tau)
         if self.ended:
@@ -425,7 +425,7 @@ class RestrainedReference:
         return self._acceleration(push, 1.0 + lift)
 
     def _acceleration_series(self) -> Poly:
-        """Return theta'' at the present rotation as a polynomial over the stretch."""
+        """Return theta'' at the present rotation as a polynomial over the segment."""
         push, lift = (rows[self.stretch].tolist() for rows in (self.push.horizontal, self.push.vertical))
         still = self._acceleration(0.0, 0.0)
         push_slope, weight_slope = self._acceleration(1.0, 0.0) - still, self._acceleration(0.0, 1.0) - still

@@ -128,7 +128,7 @@ class RestrainedResponse(ResponseBase):
 
     @property
     def peak_ratio(self) -> float:
-        """Peak rotation over the slenderness angle of its side [-]."""
+        """Peak rotation / slenderness angle of its side [-]."""
         return self.peak_rotation / self.parameters.side(self.trajectory.peak_rotation).slenderness_angle
 
     @property
@@ -442,7 +442,7 @@ def _doubts(response: RestrainedResponse) -> list[str]:
 
 
 def _until_rest(trajectory: RestrainedTrajectory, segments: Segments, min_stretches: int) -> Segments:
-    """Remove the samples at rest at the end of a response. At least `min_stretches` stretches are kept."""
+    """Remove the samples at rest at the end of a response. At least `min_stretches` segments are kept."""
     moving = (trajectory.angular_velocity != 0.0) | (np.diff(trajectory.rotation, prepend=0.0) != 0.0)
     last = max(int(moving.nonzero()[0][-1]) + 2 if moving.any() else 2, min_stretches)
     if last >= trajectory.rotation.size:

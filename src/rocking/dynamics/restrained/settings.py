@@ -20,7 +20,7 @@ class RestrainedSettings(Settings):
     linear : bool
         True for the slender-linear equations. The elongations then also assume small rotations.
     rest_speed : float
-        Largest speed after an impact, over p alpha, for which rest is considered [-]. The body comes to rest only if it
+        Largest speed after an impact / (p alpha), for which rest is considered [-]. The body comes to rest only if it
         is proven that the next impacts decay before the next uplift.
     tolerance : float
         Bound on the last two terms of a Taylor step, divided by the angle alpha [-].

@@ -1,4 +1,4 @@
-"""Rigid 3D body: mass, centre, inertia and base, and the solid from which they were computed."""
+"""Rigid 3D body: mass, centre of mass, inertia and base, and the solid from which they were computed."""
 
 import math
 from collections.abc import Callable
@@ -157,7 +157,7 @@ class SpatialBody:
 
     @classmethod
     def of(cls, body: Any) -> "SpatialBody":
-        """Return a body with mass, centre, inertia and base as a `SpatialBody`.
+        """Return a body with mass, centre of mass, inertia and base as a `SpatialBody`.
 
         Parameters
         ----------
@@ -195,7 +195,7 @@ class SpatialBody:
 
     @property
     def facts(self) -> dict[str, Any]:
-        """Mass, centre, inertia and base as plain values."""
+        """Mass, centre of mass, inertia and base as plain values."""
         return {
             "mass": self.mass,
             "centre": self.centre.tolist(),
@@ -210,7 +210,7 @@ class SpatialBody:
 
     @cached_property
     def moments(self) -> SolidMoments:
-        """Mass, centre and central second moments [kg, m, kg m2]."""
+        """Mass, centre of mass and central second moments [kg, m, kg m2]."""
         return SolidMoments(self.mass, self.centre, 0.5 * np.trace(self.inertia) * np.eye(3) - self.inertia)
 
     @cached_property

@@ -68,7 +68,7 @@ def supports(
     # force, moment: force of the ground and its moment about the pivot, in body axes [N], [N m], or impulses
     # up: vertical in body axes [-]
     # Returns the vertical force at a vertex, the forces at both ends of an edge, or for a face N times the distance of
-    # the centre of pressure from every edge over the size of the body [N].
+    # the centre of pressure from every edge, divided by the size of the body [N].
     normal = dot(force, up)
     if contact.axis is not None:
         second = dot(cross(up, moment), contact.axis) / contact.length  # Eq. 92

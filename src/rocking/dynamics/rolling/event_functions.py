@@ -66,7 +66,7 @@ def padded(series: FloatArray, count: int) -> FloatArray:
     return result
 
 
-SLOW_OPENING = 1e-9  # smaller accelerations of a gap over gravity count as zero, as in the choice of contacts
+SLOW_OPENING = 1e-9  # smaller values of acceleration of a gap / gravity count as zero, as in the choice of contacts
 START_ROLLING, STOP_ROLLING = 1e-11, 1e-13  # sines of the tilt at which a round base starts and ends rolling
 LANDING, FLAT = 1e-3, 1e-6
 """Sines of the tilt: the passage of a falling rim is predicted at the first; below the second, it is a landing."""
@@ -204,7 +204,7 @@ def _opens(force: FloatArray, opening: FloatArray) -> float | None:
 def _normal(body: SpatialBody, contact: ContactSet, step: Step) -> FloatArray:
     """Return the vertical force per unit mass as a series [N/kg]."""
     if contact.mode is ContactMode.ROLLING:
-        # height of the centre over the ground: Z . C + b sin(tilt)
+        # height of the centre of mass over the ground: Z . C + b sin(tilt)
         level = step.up[:, :2]
         height = applied(step.up, body.centre) + body.radius * square_root(dot(level, level))
     else:
@@ -256,11 +256,11 @@ _WHOLE = 1.0 - 1e-12
 def next_uplift(
     body: SpatialBody, ground: SpatialGround, rotation: FloatArray, gravity: float, position: tuple[int, float]
 ) -> tuple[int, float, tuple[int, ...]] | None:
-    """Return the next uplift: stretch, time within the stretch, and edges; None without uplift."""
+    """Return the next uplift: segment, time within the segment, and edges; None without uplift."""
     # The centre of pressure is at c - h a / (g + a_z). It is inside if (c - v_i) . n_i (g + a_z) - h n_i . a >= 0 for
     # every edge; these are polynomials of time. For a round base, b^2 (g + a_z)^2 - |c (g + a_z) - h a|^2 >= 0.
     # gravity: acceleration of gravity [m/s2]
-    # The time is in units of the stretch. The result contains the edges that the centre of pressure crosses. It
+    # The time is in units of the segment. The result contains the edges that the centre of pressure crosses. It
     # contains no edges if the centre of pressure jumps out of the base, and for a round base.
     stretch, tau = position
     if stretch >= ground.count:
@@ -291,7 +291,7 @@ def lifted(body: SpatialBody, state: SpatialState, edges: tuple[int, ...]) -> Co
 
 
 def _holds(body: SpatialBody, accelerations: FloatArray, rotation: FloatArray, gravity: float) -> FloatArray:
-    """Return the functions that are positive at rest, by stretch, edge and power."""
+    """Return the functions that are positive at rest, by segment, edge and power."""
     level = times(rotation[:2, :2].T, accelerations[:, :2])
     weight = accelerations[:, 2].copy()
     weight[:, 0] += gravity
@@ -310,14 +310,14 @@ def _holds(body: SpatialBody, accelerations: FloatArray, rotation: FloatArray, g
 
 
 def _within(holds: FloatArray, tau: float, same: float) -> tuple[float, tuple[int, ...]] | None:
-    """Return the first uplift in a stretch and its edges. There are no edges if the uplift is immediate."""
+    """Return the first uplift in a segment and its edges. There are no edges if the uplift is immediate."""
     rows = [shifted(row.tolist(), tau, 1.0 - tau) if tau > 0.0 else row.tolist() for row in holds]
     if min(row[0] for row in rows) < -same:
         return tau, ()
     falls: list[tuple[float, int]] = []
     for index, row in enumerate(rows):
         at = first_fall(row) if row[0] > 0.0 else (0.0 if _falls_at_once(row) else None)
-        if at is not None and at < _WHOLE:  # the end of a stretch belongs to the next stretch
+        if at is not None and at < _WHOLE:  # the end of a segment belongs to the next segment
             falls.append((at, index))
     if not falls:
         return None

@@ -250,8 +250,8 @@ def _position_table(bodies: Bodies, codes: set[int]) -> tuple[IntArray, FloatArr
 
 def _motion_table(grounds: Sequence[SpatialGround]) -> tuple[int, IntArray, FloatArray, FloatArray]:
     """Return tables of motions."""
-    # 1: common degree, 1 or 7. 2: first time, first acceleration, number of stretches (shape (n, 3)). 3: ends of the
-    # stretches of all motions [s]. 4: accelerations by motion, stretch, power and axis [m/s2].
+    # 1: common degree, 1 or 7. 2: first time, first acceleration, number of segments (shape (n, 3)). 3: ends of the
+    # segments of all motions [s]. 4: accelerations by motion, segment, power and axis [m/s2].
     highest = max(ground.coefficients.shape[2] for ground in grounds) - 1
     if highest > 7:
         raise InvalidValueError(

@@ -1,4 +1,4 @@
-"""Three components of ground motion as polynomials on common stretches of time."""
+"""Three components of ground motion as polynomials on common segments of time."""
 
 from dataclasses import dataclass
 
@@ -19,10 +19,10 @@ _SAME = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class SpatialGround:
-    """Accelerations of the ground along x, y and z from time zero. The ground is at rest after the last stretch."""
+    """Accelerations of the ground along x, y and z from time zero. The ground is at rest after the last segment."""
 
-    times: FloatArray  # ends of the stretches [s], starting with zero; shape (n + 1,)
-    # accelerations over every stretch by power [m/s2]; the unit of time is the stretch; shape (n, 3, degree + 1)
+    times: FloatArray  # ends of the segments [s], starting with zero; shape (n + 1,)
+    # accelerations over every segment by power [m/s2]; the unit of time is the segment; shape (n, 3, degree + 1)
     coefficients: FloatArray
 
     @property
@@ -35,7 +35,7 @@ class SpatialGround:
         return float(self.times[-1])
 
     def segment(self, stretch: int, start: float, length: float) -> FloatArray:
-        """Return accelerations by power over a segment of a stretch [m/s2]. The segment is the unit of time."""
+        """Return accelerations by power over a part of a segment [m/s2]. This part is the unit of time."""
         if stretch >= self.count:
             return np.zeros((3, 1))
         duration = self.times[stretch + 1] - self.times[stretch]
@@ -58,7 +58,7 @@ class SpatialGround:
 def ground_of(
     x: Component = None, y: Component = None, vertical: Component = None, *, until: float = np.inf, scale: float = 1.0
 ) -> SpatialGround:
-    """Return up to three motions [m/s2] on common stretches. None means a component at rest."""
+    """Return up to three motions [m/s2] on common segments. None means a component at rest."""
     # until: end of the ground motion [s], if earlier than the end of the records
     rows = [_component(name, motion) for name, motion in (("x", x), ("y", y), ("vertical", vertical))]
     ends = [times for times, _ in rows if times.size]
@@ -91,7 +91,7 @@ def _component(name: str, motion: Component) -> tuple[FloatArray, FloatArray]:
 
 
 def _recut(stops: FloatArray, polynomials: FloatArray, times: FloatArray) -> FloatArray:
-    """Rewrite polynomials on the stretches between `times`."""
+    """Rewrite polynomials on the segments between `times`."""
     result = np.zeros((len(times) - 1, polynomials.shape[1]))
     common = min(len(stops), len(times)) - 1
     if np.array_equal(stops[: common + 1], times[: common + 1]):

@@ -21,7 +21,7 @@ from rocking.dynamics.rolling.impact_laws import SpatialImpactLaw
 from rocking.outcome import ContactMode
 from rocking.portable import applied, dot, norm
 
-CLOSED = 1e-12  # a smaller gap over the size of a body counts as closed
+CLOSED = 1e-12  # a smaller ratio of gap / size of the body counts as closed
 
 
 def landed(body: SpatialBody, state: SpatialState, touching: tuple[int, ...], law: SpatialImpactLaw) -> Continuation:

@@ -28,7 +28,7 @@ from rocking.portable import applied, norm
 
 _PULL = 1e-9
 _STUCK, _PILED = 100, 60
-_PATIENCE, _MAX_LATE_STEPS = 300.0, 10_000  # limits after the end of a history: time over 1 / p, and number of steps
+_PATIENCE, _MAX_LATE_STEPS = 300.0, 10_000  # limits after the end of a history: p x time, and number of steps
 
 
 Ending = tuple[Outcome, Status] | None  # end of a history; None before the end

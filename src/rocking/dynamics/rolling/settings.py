@@ -14,7 +14,7 @@ class SpaceSettings(Settings):
     gravity, most_events
         See `Settings`; the same for all mechanics.
     rest_speed : float
-        Speed over sqrt(g R) [-]. A vertex that opens more slowly and would close at once stays in contact. The body
+        Speed / sqrt(g R) [-]. A vertex that opens more slowly and would close at once stays in contact. The body
         comes to rest if the ratio of its energy to the energy of overturning is below the square of this speed.
     longest_step : float
         Longest Taylor step, as the product of p and time [-].

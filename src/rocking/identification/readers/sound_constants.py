@@ -39,8 +39,10 @@ class SoundConstants:
     law_tolerance: float = 3e-3  # tolerance of the time between feet in Eq. 317 [s]; `onsets` finds this time later
 
     # time difference of the feet, Eq. 318
-    mode_noise: float = 0.012  # start of a mean click before its position [s]; with noise, for the noise power
-    mode_decay: float = 0.100  # end of a mean click [s]; frequency resolution 9 Hz = 1 / (0.012 s + 0.100 s)
+    # start of an averaged click before its position [s]; this interval also gives the noise power
+    mode_noise: float = 0.012
+    # end of an averaged click after its position [s]; frequency resolution 9 Hz = 1 / (0.012 s + 0.100 s)
+    mode_decay: float = 0.100
     mode_band: tuple[float, float] = (
         150.0,
         9_000.0,

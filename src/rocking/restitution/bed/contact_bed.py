@@ -190,7 +190,7 @@ class ContactBed:
         Parameters
         ----------
         body : Body
-            The body. There are no points between separate contact stretches of its base.
+            The body. There are no points between separate contact segments of its base.
         count : int
             Number of points, two or more. A body with point contacts has only its two feet.
         law : ContactLaw
@@ -198,7 +198,7 @@ class ContactBed:
         foot : {"left", "right"}
             The new foot.
         rule : {"trapezoid", "ends"}
-            Trapezoidal rule with half weights at the ends of a stretch, or equal weights for all points. With
+            Trapezoidal rule with half weights at the ends of a segment, or equal weights for all points. With
             decreasing spacing, the trapezoidal rule converges quadratically to the continuous bed, and equal weights
             converge linearly.
         friction : BaseFriction, optional

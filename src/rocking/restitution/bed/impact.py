@@ -156,7 +156,7 @@ class BedImpact:
 
     @property
     def audit(self) -> float:
-        """Energy balance error (energy at the end + losses - energy at the start) over the energy before impact [-]."""
+        """Energy balance error (energy at the end + losses - energy at the start) / energy before impact [-]."""
         return float(self.results["residual"] / self.setup.energy)
 
 

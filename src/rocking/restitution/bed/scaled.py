@@ -16,7 +16,7 @@ from rocking.restitution.bed.impact import BedStatus, bed_impacts
 from rocking.restitution.bed.laws import KelvinVoigt
 from rocking.restitution.bed.setup import Setup, setup_of
 
-RELEASE = 0.05  # initial rotation over the smallest slenderness angle [-], for rocking of small amplitude
+RELEASE = 0.05  # initial rotation / smallest slenderness angle [-], for rocking of small amplitude
 _TOLERANCES = (1e-8, 3e-8, 1e-7, 1e-6)
 
 
@@ -29,11 +29,11 @@ class ScaledImpact:
     0.7
     """
 
-    flatness: float  # 1 / (1 + rho) [-], with rho = (I_C + m h^2) / (m w^2), w half the distance of the feet
+    flatness: float  # 1 / (1 + rho) [-], with rho = (I_C + m h^2) / (m w^2), w: half of the distance between the feet
     offset: float  # distance from the plumb line back to the middle of the base, over w [-]
     points: int  # number of contact points from foot to foot
     damping: float  # damping ratio of the whole bed [-]
-    hardness: float  # landing speed of the new foot times sqrt(k / m) over gravity [-]
+    hardness: float  # landing speed of the new foot times sqrt(k / m) / gravity [-]
     friction: float = math.inf  # coefficient of friction [-]; infinite for a base that cannot slide
     # m h^2 / (I_C + m h^2) [-], which gives the height of the centre for a base that slides
     height_share: float = 0.7

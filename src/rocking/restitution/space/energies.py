@@ -41,7 +41,7 @@ class UnitEnergies:
 
     @property
     def density(self) -> FloatArray:
-        """Energy losses of the units over their masses [J/kg]."""
+        """Energy losses of the units / their masses [J/kg]."""
         return np.asarray(self.lost / self.units.mass)
 
     def layers(self, count: int, height: float | None = None) -> tuple[FloatArray, FloatArray]:

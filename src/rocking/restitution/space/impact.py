@@ -40,7 +40,7 @@ class SpatialImpact:
     Parameters
     ----------
     body : SolidMoments
-        Mass, centre and central second moments [kg, m, kg m2].
+        Mass, centre of mass and central second moments [kg, m, kg m2].
     velocity : ndarray, shape (3,)
         Angular velocity before the impact [rad/s].
     pivot : ndarray, shape (3,)
@@ -91,7 +91,7 @@ class SpatialImpact:
 
     @cached_property
     def moments(self) -> SolidMoments:
-        """Mass, centre and second moments of the body, relative to the landing point [kg, m, kg m2]."""
+        """Mass, centre of mass and second moments of the body, relative to the landing point [kg, m, kg m2]."""
         return SolidMoments(self.body.mass, self.body.centre - self.onto.point, self.body.second)
 
     @cached_property

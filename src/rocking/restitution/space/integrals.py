@@ -146,7 +146,7 @@ _PAIRS = np.array([(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)])
 class KeptMoments:
     """Moments of the mass points with the velocities after stage 2 of KED."""
 
-    form: FloatArray  # products of n quadratic and m linear features over the squared length; shape (n + m, n + m)
+    form: FloatArray  # products of n quadratic and m linear features / squared length; shape (n + m, n + m)
     directions: FloatArray  # A: directions of the linear features [-]; shape (m, 3)
     products: FloatArray  # coefficients of linear features times s in the quadratic features [-]; shape (n, m, 3)
     # mass, first and second moments about the landing point; at a corner, the form is subtracted from these; zero at an
@@ -199,7 +199,8 @@ class KeptMoments:
 
 def kept_moments(solid: Solid, onto: Corner | Edge) -> KeptMoments:
     """Return the moments after stage 2 of KED about a corner or an edge in the frame of the solid [m]."""
-    # about a corner, two of three directions remain, so that the trace is twice the mass; about an edge, it is the mass
+    # at a corner two of three directions remain: the trace of the mass matrix is twice the mass; at an edge it is the
+    # mass
     if isinstance(onto, Edge):
         return _about_line(solid, *onto.point.tolist(), *onto.direction.tolist())
     return _about_point(solid, *onto.point.tolist())

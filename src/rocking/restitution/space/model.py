@@ -92,7 +92,7 @@ class SpatialModel(ABC):
     domain : str
         Impacts to which the model applies.
     needs_solid : bool
-        True if the model needs the distribution of mass in addition to mass, centre and inertia.
+        True if the model needs the distribution of mass in addition to mass, centre of mass and inertia.
     """
 
     name: ClassVar[str]

@@ -37,8 +37,8 @@ class LongRunTable(JobTable):
 class HarmonicTable(LongRunTable):
     """Harmonic ground motion."""
 
-    amplitude: Positive = key("peak ground acceleration over that of uplift, g tan alpha [-]", 1.5)
-    frequency: Positive = key("circular frequency of the ground motion over p [-]", 3.0)
+    amplitude: Positive = key("peak ground acceleration / uplift acceleration g tan alpha [-]", 1.5)
+    frequency: Positive = key("circular frequency of the ground motion / p [-]", 3.0)
 
 
 class BifurcationTable(HarmonicTable):
@@ -52,12 +52,14 @@ class BifurcationTable(HarmonicTable):
         description="increasing values of the axis",
         json_schema_extra={"usual": "0.2 to 4", "allowed": "increasing numbers > 0"},
     )
-    starts: int = key("number of initial states: at rest, then random after an impact", 4, ge=1, le=10_000)
+    starts: int = key(
+        "number of initial states: one at rest, the others at random velocities after an impact", 4, ge=1, le=10_000
+    )
     sweeps: Annotated[list[Sweep], Field(min_length=1, max_length=3), BeforeValidator(_words)] = key(
         "sweeps with memory: none, up, down", ["none"]
     )
-    settled: int = key("number of periods before the kept ones", 300, ge=0, le=1_000_000)
-    kept: int = key("number of kept periods", 128, ge=1, le=100_000)
+    settled: int = key("number of periods before the stored periods", 300, ge=0, le=1_000_000)
+    kept: int = key("number of stored periods", 128, ge=1, le=100_000)
     exponents: bool = key("largest Lyapunov exponents", True)
 
     @model_validator(mode="after")
@@ -96,13 +98,13 @@ class BasinsTable(LongRunTable):
         description="peak ground acceleration / uplift acceleration [-]",
         json_schema_extra={"usual": "1.5", "allowed": "numbers > 0"},
     )
-    frequency: Positive = key("circular frequency of the ground motion over p [-]", 3.0)
+    frequency: Positive = key("circular frequency of the ground motion / p [-]", 3.0)
     phases: int = key("number of phases of the ground motion at the impact", 100, ge=1, le=20_000)
     speeds: int = key("number of speeds after the impact; 0 for a start at rest", 100, ge=0, le=20_000)
     highest: Positive = key("upper end of the speeds / (alpha p) [-]", 2.0)
     impacts: int = key("number of impacts", 120, ge=1, le=1_000_000)
     small: float = key("speed / (alpha p) below which a motion counts as small [-]", 0.02, ge=0.0, le=1.0)
-    check: bool = key("second computation with another step error", True)
+    check: bool = key("repeat with 30 times the step error, to detect uncertain states", True)
 
     def task(self, seed: int) -> "Task":
         """Return the cells."""

@@ -28,7 +28,7 @@ Crossing = Literal["keep-uplift", "common-dispersion", "refuse"]
 COMMON = "common-dispersion"  # method of curves with a common dispersion
 ROCKING, OVERTURNED = NAMED["rocking"].name, NAMED["overturning"].name
 STATES = Option("fragility.limit_states")
-TOLERANCE = 1e-6  # largest allowed excess of the probability of a worse state over that of a lesser state in a file [-]
+TOLERANCE = 1e-6  # largest allowed difference of probabilities in a file: worse state - lesser state [-]
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ class LimitState:
     name: str  # ``rocking``, ``rotation > 0.5 alpha``, ``overturned``, ``yield``, ``rupture of tendon 1``
     # rotation / alpha that must be exceeded [-]: 0 for rocking, infinite for overturning, NaN for restraints
     level: float = math.nan
-    damage: str = ""  # ``yield`` or ``rupture`` for a state of restraints
+    damage: str = ""  # ``yield`` or ``rupture`` for a limit state of restraints
     restraint: str = ""  # name of the restraint; empty for any restraint
 
 

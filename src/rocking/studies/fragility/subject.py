@@ -234,7 +234,7 @@ class Responses:
     """Results of histories, with any shape, for the evaluation of limit states."""
 
     outcome: np.ndarray  # codes of `Outcome`
-    # largest rotation over the alpha of its side [-]; infinite if overturned, NaN if the history failed
+    # largest rotation / alpha of its side [-]; infinite if overturned, NaN if the history failed
     rotation: FloatArray
     sides: np.ndarray  # side of overturning: 1 right, -1 left, 0 without overturning
     # 1 for a tensile contact force, as in `lost_contact` [-]; None if not computed

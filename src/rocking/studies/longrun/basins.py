@@ -18,12 +18,12 @@ KINDS = ("overturned", "small", "settled", "failed")
 
 
 def basin_stability(kinds: Any, level: float = 0.95) -> tuple[float, float, float]:
-    """Return the fraction of starts that do not overturn, with its interval for random starts.
+    """Return the fraction of initial states without overturning, with its interval for random initial states.
 
     Parameters
     ----------
     kinds : array_like of int
-        Final states, as of `rocking.basin`: 0 for a start that overturns.
+        Final states, as of `rocking.basin`: 0 for overturning.
     level : float, optional
         Level of the interval (Clopper and Pearson) [-].
 
@@ -44,18 +44,18 @@ def basin_stability(kinds: Any, level: float = 0.95) -> tuple[float, float, floa
 
 
 def box_dimension(kinds: Any) -> float:
-    """Return the box-counting dimension of the boundary between starts that overturn and others.
+    """Return the box-counting dimension of the boundary between initial states with and without overturning.
 
     Parameters
     ----------
     kinds : array_like of int
-        Final states, as of `rocking.basin`: 0 for a start that overturns, shape (phases, speeds).
+        Final states, as of `rocking.basin`: 0 for overturning, shape (phases, speeds).
 
     Returns
     -------
     float
-        Slope of the number of boxes that contain both over their size, between 1 and 2; NaN without a boundary, or with
-        fewer than 64 cells along an axis.
+        Slope of the number of boxes with both final states against the box size, in logarithms, between 1 and 2. NaN
+        without a boundary, or with fewer than 64 cells along an axis.
 
     Examples
     --------
@@ -106,7 +106,7 @@ def checked_ends(
     system: HarmonicRocking, phase: Any, speed: Any, *, impacts: int = 120, small: float = 0.02,
     numerics: Numerics = DEFAULTS, check: bool = True,
 ) -> Any:  # fmt: skip
-    """Return the kinds of histories, and those with another step error, shape (2, rows)."""
+    """Return the final states, and the final states with 30 times the step error, shape (2, rows)."""
     steps = [numerics, replace(numerics, step_error=30.0 * numerics.step_error)][: 1 + check]
     kinds = [ends_of(system, phase, speed, impacts=impacts, small=small, numerics=step) for step in steps]
     return np.array([kinds[0], kinds[-1]])

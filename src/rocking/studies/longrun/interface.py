@@ -84,7 +84,7 @@ def bifurcation(  # noqa: PLR0913 - every one of them is a question that users a
     body, excitation
         As for `poincare`.
     axis : {"amplitude", "frequency", "slenderness", "size", "restitution"}
-        Parameter: amplitude over that of uplift, frequency over p, slenderness h/b of a block with constant amplitude
+        Parameter: amplitude / uplift amplitude, frequency / p, slenderness h/b of a block with constant amplitude
         and frequency ratios, semi-diagonal [m] with constant ground motion, or coefficient of restitution.
     values : array_like
         Increasing values of the parameter.
@@ -188,7 +188,8 @@ def basin(  # noqa: PLR0913 - every one of them is a question that users ask
     body, excitation, restitution
         As for `poincare`.
     amplitudes : array_like, optional
-        Amplitudes over that of uplift [-]; that of the ground motion by default. Several show the erosion.
+        Amplitudes / uplift amplitude [-]. Default: the amplitude of the ground motion. Several amplitudes show the
+        erosion.
     phases, speeds : int or array_like, optional
         Number of cells, with states at their centres, or phases of the ground motion [rad] and speeds / (alpha p).
         One phase or one speed is a path through the basin. A speed of 0, also ``speeds=0``, is a start at rest.
@@ -200,7 +201,7 @@ def basin(  # noqa: PLR0913 - every one of them is a question that users ask
         Speed / (alpha p) after an impact below which a history ends as small; a history from rest is small if the body
         rests in the last period.
     check : bool, optional
-        True repeats the computation with another step error and marks the cells that differ.
+        True repeats the computation with 30 times the step error and marks the cells that differ.
     linear, gravity, threads
         As for `poincare`.
 
@@ -255,7 +256,7 @@ def periodic_orbits(  # noqa: PLR0913 - every one of them is a question that use
     body, excitation
         As for `poincare`. The body is symmetric, and the amplitude is that of the first orbit.
     axis : {"amplitude", "frequency", "restitution"}, optional
-        Parameter: amplitude over that of uplift, frequency over p, or coefficient of restitution.
+        Parameter: amplitude / uplift amplitude, frequency / p, or coefficient of restitution.
     limits : tuple of float, optional
         Limits of the parameter.
     restitution

@@ -114,9 +114,9 @@ class HarmonicRocking:
         body : Body
             Block, Section or MassPoints.
         amplitude : float
-            Peak ground acceleration over g tan alpha of the right foot; over g alpha with ``linear=True`` [-].
+            Peak ground acceleration / (g tan alpha) of the right foot; with ``linear=True`` / (g alpha) [-].
         frequency : float
-            Circular frequency over the frequency parameter p of the right foot [-].
+            Circular frequency / frequency parameter p of the right foot [-].
         gravity : float, optional
             Acceleration of gravity [m/s2].
         **options
@@ -168,12 +168,12 @@ class HarmonicRocking:
 
     @property
     def amplitude_ratio(self) -> float:
-        """Peak ground acceleration over that of uplift from the right foot [-]."""
+        """Peak ground acceleration / uplift acceleration of the right foot [-]."""
         return self.excitation.amplitude / self.unit
 
     @property
     def frequency_ratio(self) -> float:
-        """Circular frequency over p of the right foot [-]."""
+        """Circular frequency / p of the right foot [-]."""
         return self.excitation.frequency / self.p
 
     def changed(self, parameter: Parameter, value: float) -> "HarmonicRocking":
@@ -234,7 +234,7 @@ class HarmonicRocking:
 
     @property
     def sine(self) -> FloatArray:
-        """Amplitude over g [-], circular frequency [rad/s] and phase [rad], shape (3,)."""
+        """Amplitude / g [-], circular frequency [rad/s] and phase [rad], shape (3,)."""
         motion = self.excitation
         return np.array([motion.amplitude / self.gravity, motion.frequency, motion.phase])
 

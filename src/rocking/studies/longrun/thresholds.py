@@ -47,7 +47,7 @@ class SlenderThresholds:
 
 
 def slender_conditions(frequency: float, restitution: float) -> tuple[FloatArray, FloatArray]:
-    """Return forced rotation and rate over the frequency at an impact of the symmetric orbit: at speed 0, by speed."""
+    """Return forced rotation and rate / frequency at an impact of the symmetric orbit: at speed 0, by speed."""
     w = checks.positive("frequency", frequency)
     r = checks.within("restitution", restitution, 0.0, 1.0, open_low=True)
     c, s = math.cosh(math.pi / w), math.sinh(math.pi / w)
@@ -63,7 +63,7 @@ def slender_thresholds(frequency: float, restitution: float) -> SlenderThreshold
     Parameters
     ----------
     frequency : float
-        Circular frequency over p [-].
+        Circular frequency / p [-].
     restitution : float
         Coefficient of restitution, in (0, 1] [-].
 

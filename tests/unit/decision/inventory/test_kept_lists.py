@@ -227,6 +227,6 @@ def test_thousands_settled_by_their_column():
     text = "No.;Object;Width (mm);Depth (mm);Height (mm)\n1;Chest;1,250;800;900.5\n2;Box;350;300;900\n3;Box;360;300;900\n4;Box;370;300;900"
     found, rows = rows_of(text)
     assert rows[0] == (2, "1", "Chest", 125, 80, 90.05)
-    assert "the mark separates thousands" in str(found.objects[0].remarks[0])
+    assert "read with a thousands separator" in str(found.objects[0].remarks[0])
     found, rows = rows_of(text.replace("370", "1.5"))  # negative control: one number of the column is near neither
     assert [each.number for each in found.not_assessed] == ["1"]

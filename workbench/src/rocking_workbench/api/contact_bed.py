@@ -54,7 +54,7 @@ class ContactBedRequest(JobTable):
     frequency: Positive = Field(400.0, description="frequency of the bed under the block, unless a layer is given [Hz]")
     modulus_over_thickness: Positive | None = Field(
         None,
-        description="elastic modulus of the layer / its thickness, for a depth of 1 m; replaces the frequency [Pa/m]",
+        description="in place of the frequency: elastic modulus / thickness of the layer, for a depth of 1 m [Pa/m]",
     )
     damping: Annotated[float, Field(ge=0.0)] = Field(1.0, description="damping ratio of the bed [-]")
     release: Annotated[float, Field(gt=0.0, lt=1.0)] = Field(

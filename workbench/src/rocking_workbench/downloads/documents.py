@@ -65,7 +65,7 @@ async def inputs_file(request: Request, inputs: Inputs) -> Answer:
 
 @router.post(
     "/inputs.zip",
-    summary="The inputs with their record",
+    summary="Input file with its record",
     responses=answered_with_file("Input file, record and commands.", "zip"),
 )
 async def inputs_bundle(request: Request, inputs: Inputs) -> Answer:

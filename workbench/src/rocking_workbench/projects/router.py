@@ -17,7 +17,7 @@ from rocking_workbench.work import heavy
 
 router = APIRouter(prefix="/api/projects", tags=["projects"])
 Name = Annotated[str, Field(min_length=1, max_length=200, description="display name")]
-Version = Annotated[int, Field(ge=1, description="version before this change; refused if there is a later version")]
+Version = Annotated[int, Field(ge=1, description="version before this change; a change of an older version is refused")]
 _DOCUMENT = "body, motion, restitution and further inputs, possibly incomplete"
 
 ProjectFacts: Any = shape_of(Project, "ProjectFacts")

@@ -56,7 +56,7 @@ class PointRequest(BaseModel):
     x: Whole = 0
     y: Whole = 0
     restitution: Whole = 0
-    motion: Annotated[Whole, Field(description="index of the motion, unless it is an axis")] = 0
+    motion: Annotated[Whole, Field(description="index of the motion; ignored if the motion is an axis of the map")] = 0
     points: Annotated[int, Field(ge=10, le=2000, description="pixels of the curves")] = 1000
 
 

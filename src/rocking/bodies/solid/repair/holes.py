@@ -89,7 +89,8 @@ def boundary_loops(faces: IntArray) -> list[IntArray]:
             del path[loop_start + 1 :]
         if len(path) > 1:
             raise GeometryError(
-                "The open edges of the surface form no rings, because more than two faces meet there", hint=HELP
+                "The open edges of the surface do not form closed rings, because more than two faces meet at an edge",
+                hint=HELP,
             )
     return loops
 

@@ -24,7 +24,8 @@ MOST_SHIFT = 0.005  # largest shift of the centre of mass by all safe repairs / 
 
 SKINS = {"wrap": Option("body.surface", "wrap"), "hull": Option("body.surface", "hull")}
 HELP = Message(
-    "repair the mesh in its own program, or use {all} to allow all repairs, or {wrap} or {hull} for a skin around its "
+    "repair the mesh in the program that wrote it, or use {all} to allow all repairs, or {wrap} or {hull} for a skin "
+    "around its "
     "points",
     {"all": Option("body.repair", "all"), **SKINS},
 )
@@ -60,9 +61,9 @@ class RepairLog:
         self.repairs.append((sentence, volume, location))
 
     def bounds(self, result: SolidMoments, size: float) -> list[tuple[float, float]]:
-        """Return bounds of the relative volume change [-] and of the shift of the centre [m], by repair."""
+        """Return bounds of the relative volume change [-] and of the shift of the centre of mass [m], by repair."""
         # `result` is the volume and centre of the repaired body; `size` is its largest side [m]. A change without
-        # location has an assumed distance of size / 2 from the centre.
+        # location has an assumed distance of size / 2 from the centre of mass.
         bounds_of_repairs = []
         for _, volume, location in self.repairs:
             distance = 0.5 * size if location is None else float(np.linalg.norm(location - result.centre))
@@ -89,8 +90,8 @@ class RepairLog:
 
 
 def _bounded(repair: str, volume_change: float, shift: float) -> str:
-    """Return a repair with its bounds of volume change [-] and shift of the centre [m]."""
+    """Return a repair with its bounds of volume change [-] and shift of the centre of mass [m]."""
     return Message(
-        "{repair}; effect at most {share} of the volume, {shift:.2g} mm of the centre",
+        "{repair}; changes at most {share} of the volume and moves the centre of mass by at most {shift:.2g} mm",
         {"repair": repair, "share": percent(volume_change), "shift": 1000.0 * shift},
     )

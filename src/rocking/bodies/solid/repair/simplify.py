@@ -38,7 +38,7 @@ def simplify(points: FloatArray, faces: IntArray, log: RepairLog) -> tuple[Float
     shift = float(np.linalg.norm(after.centre - before.centre))
     log.add_repair(
         Message(
-            "simplified from {before} to {after} faces; shift of the hull at most {hull:.2g} mm, of the centre "
+            "simplified from {before} to {after} faces; shift of the hull at most {hull:.2g} mm, of the centre of mass "
             "{centre:.2g} mm",
             {"before": len(faces), "after": len(fewer), "hull": 1000.0 * moved, "centre": 1000.0 * shift},
         ),

@@ -36,7 +36,8 @@ def smooth_crossings(points: FloatArray, faces: IntArray, log: RepairLog) -> tup
             "The surface intersects itself, mainly near {point}. {pairs} pair(s) of faces cross, and smoothing does "
             "not separate them", point=log.describe(first.location), pairs=first.pairs,
             hint=Message(
-                "repair the mesh in its own program, for instance by a boolean union, or use {wrap} or {hull} for a "
+                "repair the mesh in the program that wrote it, for instance by a boolean union, or use {wrap} or "
+                "{hull} for a "
                 "skin around its points", SKINS,
             ),
         )  # fmt: skip

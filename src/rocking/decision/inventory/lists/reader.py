@@ -384,7 +384,9 @@ class _Reader:
         title, stem, length = column.title, column.stem, measure(column.title, cell, factor, self.mark)
         if isinstance(cell, str) and self.mark.is_settled_by_column(title, cell):
             facts = {"title": title, "cell": f"{cell!r:.40}"}
-            remark = Message("{title} {cell}: the mark separates thousands, as in its column", facts)
+            remark = Message(
+                "{title} {cell}: read with a thousands separator, as in the other cells of this column", facts
+            )
             values.remarks.append(remark)
         is_diameter = length.across and stem in {"width", "depth"}
         values.take(("diameter",) if is_diameter else column.fields, length, title, cell)

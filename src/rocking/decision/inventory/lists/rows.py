@@ -237,7 +237,9 @@ class RowValues:
         size = min((fields[way] for way in ("width", "depth") if way in fields), default=0.0)
         if {"base_width", "base_depth", "solid"} & fields.keys() or pedestal > size:
             self.remarks.append(
-                ignored_remark(title, Message("the pedestal is larger than the object, or the list contains a base"))
+                ignored_remark(
+                    title, Message("the pedestal is larger than the object, or the list contains the size of the base")
+                )
             )
         else:
             both = ("base_width", "base_depth")

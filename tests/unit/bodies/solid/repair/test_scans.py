@@ -171,7 +171,7 @@ def test_a_hole_in_the_top_of_a_plinth_is_no_bottom(tmp_path):
 
 def stated(repairs):
     """The bounds that sentences state: of the volume [-], of the centre [m]."""
-    pattern = r"at most ([\d.e-]+) % of the volume, ([\d.e-]+) mm"
+    pattern = r"at most ([\d.e-]+) % of the volume and moves the centre of mass by at most ([\d.e-]+) mm"
     pairs = [tuple(map(float, match)) for words in repairs for match in re.findall(pattern, words)]
     return sum(pair[0] for pair in pairs) / 100.0, sum(pair[1] for pair in pairs) / 1000.0
 
@@ -254,7 +254,7 @@ def test_fewer_faces(monkeypatch):
     monkeypatch.setattr(simplify, "MOST_FACES", 20_000)
     done = repair_surface(vertices, faces)
     words = next(sentence for sentence in done.repairs if sentence.startswith("simplified"))
-    hull, shift = (float(x) / 1000.0 for x in re.findall(r"(?:at most|of the centre) ([\d.e-]+) mm", words)[:2])
+    hull, shift = (float(x) / 1000.0 for x in re.findall(r"(?:at most|of the centre of mass) ([\d.e-]+) mm", words)[:2])
     assert len(done.shape.faces) < 0.7 * len(faces)
     volume, centre = bad_scans.volume_and_centre(vertices, faces)
     found = done.shape.moments()

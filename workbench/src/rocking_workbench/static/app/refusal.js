@@ -33,7 +33,7 @@ const WAYS = {
 export const whyLeftOut = ({ reason, hint, to_state: path }) => {
   const way = WAYS[path ?? ""];
   if (way) return t("{location}: {fault}", { location: reason, fault: way });
-  return hint ? t("{fault}; {hint}", { fault: reason, hint }) : t(reason);
+  return hint ? t("{fault}; {hint}", { fault: clause(reason), hint }) : t(reason);
 };
 
 /** Message with its values in the notation of the page. @param {any} message
@@ -55,7 +55,7 @@ export const refusalWords = (refusal) => {
   const hint = refusal.hint?.text ? spelt(refusal.hint) : "";
   const isWay = Object.values(refusal.hint?.facts ?? {}).some((fact) => fact?.kind === "option" && WAYS[fact.path]);
   const fault = within(places, spelt(inForm(refusal)));
-  return hint && isWay ? t("{location}: {fault}", { location: fault, fault: hint }) : hint ? t("{fault}; {hint}", { fault, hint }) : fault;
+  return hint && isWay ? t("{location}: {fault}", { location: fault, fault: hint }) : hint ? t("{fault}; {hint}", { fault: clause(fault), hint }) : fault;
 };
 
 /** Key of the form with the error. @param {Required<Server.Refusal>} refusal @returns {string | undefined} */
@@ -75,9 +75,12 @@ const sentenceOf = (error, units) => {
   else if (about) fault = places.length ? t("the {fault}", { fault }) : capital(t("The {fault}", { fault }));
   else if (!places.length) fault = capital(fault);
   fault = within(places, fault);
-  if (error.hint?.text) fault = t("{fault}; {hint}", { fault, hint: spelt(error.hint, units) });
+  if (error.hint?.text) fault = t("{fault}; {hint}", { fault: clause(fault), hint: spelt(error.hint, units) });
   return error.more ? t("{fault}; there are further errors", { fault }) : fault;
 };
+
+/** Sentence without its final full stop. @param {string} text */
+const clause = (text) => text.replace(/[.\u3002]$/, "");
 
 /** @param {string[]} places @param {string} fault */
 const within = (places, fault) => places.reduceRight((text, location) => t("{location}: {fault}", { location, fault: text }), fault);

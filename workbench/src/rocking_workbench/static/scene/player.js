@@ -131,7 +131,7 @@ export class Player {
     return sceneStill(this.stage, this.clock.now, names);
   }
 
-  /** Writes instant and rotation in numbers. */
+  /** Writes the time and the rotation as numbers. */
   tell() {
     if (!this.play) return;
     const { now, end } = this.clock;

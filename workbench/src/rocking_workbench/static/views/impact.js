@@ -15,7 +15,7 @@ import { Coefficients, Warnings } from "/views/impact-table.js";
 import { t } from "/app/words.js";
 
 /** @type {{ [foot in Foot]: string }} */
-const ONTO = { left: "Onto the left foot", right: "Onto the right foot" };
+const ONTO = { left: "Impact onto the left foot", right: "Impact onto the right foot" };
 
 /** Show the view. @param {HTMLElement} section @param {App} app */
 export const mount = (section, app) => {

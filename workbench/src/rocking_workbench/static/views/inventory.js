@@ -145,7 +145,7 @@ const Ranking = ({ answer }) => {
     ${missing > 0 && html`<h3>Not assessed</h3><${Rows} caption="Rows without a rating" head=${["object", "line", "reason"]}
       rows=${answer.not_assessed.map((/** @type {any} */ row) => [label(row) ? [label(row), "own"] : "no name", String(row.row), row.reason])} />`}
     ${answer.not_objects.length > 0 && html`<details><summary>Lines that are not objects</summary>
-      <${Rows} caption="List lines that are not objects" head=${["text", "line", "reason"]}
+      <${Rows} caption="Lines of the list that are not objects" head=${["text", "line", "reason"]}
         rows=${answer.not_objects.map((/** @type {any} */ row) => [[row.text, "own"], String(row.row), row.reason])} /></details>`}
     ${answer.stated.map((/** @type {string} */ note) => html`<p key=${note} class="field-help">${note}</p>`)}
     ${answer.columns_not_read.length > 0 && html`<p class="field-help">${t("Ignored columns: {names}", { names: answer.columns_not_read.join(", ") })}</p>

@@ -10,9 +10,9 @@ const KINDS = {
 };
 /** @type {Words} */
 const TITLES = {
-  pseudo_acceleration: "Pseudo-acceleration over period, 5 % damping",
-  pseudo_velocity: "Pseudo-velocity over period, 5 % damping",
-  spectral_displacement: "Relative displacement over period, 5 % damping",
+  pseudo_acceleration: "Pseudo-acceleration against period, 5 % damping",
+  pseudo_velocity: "Pseudo-velocity against period, 5 % damping",
+  spectral_displacement: "Relative displacement against period, 5 % damping",
 };
 const WORDS = [["pseudo_acceleration", "Acceleration"], ["pseudo_velocity", "Velocity"], ["spectral_displacement", "Displacement"]];
 

@@ -6,7 +6,7 @@ import { t } from "/app/words.js";
 
 const chosenKey = signal(null);
 
-/** Returns the labels of a restitution table in the order of its answers.
+/** Returns the labels of a restitution table in the order of the results.
  * @param {Server.RestitutionTable} [table] @returns {string[]} */
 export const labelsOf = (table) => {
   const { models, value, feet } = readRestitution(table);

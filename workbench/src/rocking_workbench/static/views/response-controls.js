@@ -110,6 +110,6 @@ const Models = ({ app, table }) => {
       <p class="field-help">${CALIBRATED}</p>
       <${Switch} label="One coefficient for each foot" help="Replaces all models." value=${feet !== null}
         on=${(yes) => change({ feet: yes ? [USUAL, USUAL] : null })} />
-      ${feet && html`<div class="fields">${foot("Onto the left foot", 0)}${foot("Onto the right foot", 1)}</div>`}
+      ${feet && html`<div class="fields">${foot("Impact onto the left foot", 0)}${foot("Impact onto the right foot", 1)}</div>`}
     </div>`;
 };

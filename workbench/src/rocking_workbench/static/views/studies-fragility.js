@@ -20,7 +20,7 @@ export const Fragility = ({ study, result, chosen }) => {
     <div data-about=${options[chosen.restitution][1]}>
       <${Analysis} key=${k.value} result=${result} analysis=${result.analyses[chosen.restitution]} />
       ${study.kind === "incremental" && html`<h3>Curves of the incremental analysis</h3><${Fetched} key=${`curves ${k.value}`} title="Curves of the incremental analysis"
-        path=${`studies/${study.id}/export.svg?restitution=${k.value}`} alt="Peak rotation of each motion over its intensity level" />`}</div>`;
+        path=${`studies/${study.id}/export.svg?restitution=${k.value}`} alt="Intensity level against peak rotation, one curve per motion" />`}</div>`;
 };
 
 /** @param {{ result: Server.FragilityResult, analysis: Server.AnalysisFacts }} props */
