@@ -13,10 +13,12 @@ from rocking.dynamics.settings import Settings
 from rocking.motions.components import AnyMotion
 
 if TYPE_CHECKING:
+    from rocking.bodies import Stack
     from rocking.bodies.solid import Solid
     from rocking.dynamics.frictional.response import HullResponse
     from rocking.dynamics.plane_frictional import ContactResponse, Start
     from rocking.dynamics.rolling import SpatialBody, SpatialResponse, SpatialStart
+    from rocking.dynamics.stack.response import StackResponse
 
     BodyInSpace: TypeAlias = Solid | SpatialBody
 
@@ -78,6 +80,11 @@ def simulate(
 ) -> "ContactResponse": ...  # fmt: skip
 @overload
 def simulate(
+    body: "Stack", motion: AnyMotion, restitution: Any = DEFAULT_RESTITUTION, *, friction: None = None,
+    **options: Unpack[MovedOptions],
+) -> "StackResponse": ...  # fmt: skip
+@overload
+def simulate(
     body: "BodyInSpace", motion: AnyMotion, restitution: Any = DEFAULT_RESTITUTION, *, friction: None = None,
     **options: Unpack[MovedOptions],
 ) -> "SpatialResponse": ...  # fmt: skip
@@ -101,8 +108,9 @@ def simulate(
 
     Parameters
     ----------
-    body : Body, Solid or SpatialBody
-        A plane body (Block, Section, MassPoints), or a 3D body with mass, centre of mass, inertia and base.
+    body : Body, Stack, Solid or SpatialBody
+        A plane body (Block, Section, MassPoints), a stack of plane bodies with its own friction and restitution, or a
+        3D body with mass, centre of mass, inertia and base.
     motion : GroundMotion, Pulse, mapping or tuple
         The motion along x, or ``{"x": .., "y": .., "z": ..}`` with z upwards, or up to three motions in this order. All
         components start at the same time. A record is linear between its samples; a pulse is exact. A plane body uses x
@@ -132,7 +140,7 @@ def simulate(
         Acceleration of gravity [m/s2].
     engine : {"auto", "fast", "reference"}
         Engine. `Response.engine` names the engine that was used. The fast engine applies to plane bodies without
-        friction and to 3D bodies with friction.
+        friction, to stacks and to 3D bodies with friction.
     linear, rest_speed, most_events, longest_step, order, tolerance
         Settings of the integration: see `PlaneSettings`, `ContactSettings`, `SpaceSettings` and `HullSettings` for
         defaults and limits.
@@ -156,9 +164,9 @@ def simulate(
 
     Returns
     -------
-    Response, ContactResponse, SpatialResponse or HullResponse
-        Response of a plane body, a plane body with friction, a 3D body, or a 3D body with friction: motion, impacts,
-        outcome and other results.
+    Response, ContactResponse, StackResponse, SpatialResponse or HullResponse
+        Response of a plane body, a plane body with friction, a stack, a 3D body, or a 3D body with friction: motion,
+        impacts, outcome and other results.
 
     Raises
     ------
@@ -199,6 +207,11 @@ def free_rocking(
 ) -> "ContactResponse": ...  # fmt: skip
 @overload
 def free_rocking(
+    body: "Stack", rotation: Any = 0.0, restitution: Any = DEFAULT_RESTITUTION, *, friction: None = None,
+    **options: Unpack[HistoryOptions],
+) -> "StackResponse": ...  # fmt: skip
+@overload
+def free_rocking(
     body: "BodyInSpace", rotation: float = 0.0, restitution: Any = DEFAULT_RESTITUTION, *, friction: None = None,
     **options: Unpack[HistoryOptions],
 ) -> "SpatialResponse": ...  # fmt: skip
@@ -219,9 +232,9 @@ def free_rocking(
 
     Parameters
     ----------
-    body : Body, Solid or SpatialBody
+    body : Body, Stack, Solid or SpatialBody
         As for `simulate`.
-    rotation : float
+    rotation : float, or array_like of shape (bodies,) for a stack
         Initial rotation theta of a plane body, positive to the right, or tilt of a 3D body towards x [rad].
     restitution : str, RestitutionModel, float, mapping or ImpactLaw
         As for `simulate`.
@@ -233,7 +246,7 @@ def free_rocking(
 
     Returns
     -------
-    Response, ContactResponse, SpatialResponse or HullResponse
+    Response, ContactResponse, StackResponse, SpatialResponse or HullResponse
         As for `simulate`; the motion is None.
 
     Raises
