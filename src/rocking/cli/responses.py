@@ -28,6 +28,7 @@ _PEAKS = (
     "error_estimate", "residual_rotation", "uplift_height", "largest_base_shear", "largest_overturning_moment",
     "lost_contact_time", "largest_base_displacement", "residual_base_displacement",
 )  # fmt: skip
+_NOT_ANIMATED = {"restraints", "joints", "largest_base_displacement"}  # results of responses without animation
 _RESTRAINTS = (
     "restraint", "largest_force", "smallest_force", "largest_elongation", "yield_count", "is_broken", "residual_force",
     "dissipated_energy",
@@ -178,7 +179,8 @@ class ResponseAnswer:
         page.facts(_sources(self._components.values()) if self.details else (), 8)
         page.warn(answer["body"].values.get("repairs", ()))
         if not self.details:
-            film = "picture.png" if "restraints" in answer else "animation.html"  # restraints have no animation
+            is_animated = not _NOT_ANIMATED & answer.values.keys()
+            film = "animation.html" if is_animated else "picture.png"
             page.line(f"Impacts, energy, sources: --details    Files: -o rows.csv, -o {film}, -o report=report.pdf")
 
     def _show_tables(self, page: Page, answer: Answer) -> None:

@@ -30,7 +30,9 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
     from matplotlib.transforms import Affine2D
 
-NOT_MOVED = "an animation needs a result of simulate or free_rocking, for a body without restraints"
+NOT_MOVED = (
+    "an animation needs a result of simulate or free_rocking, for a single body without restraints and isolators"
+)
 MOST_FRAMES = 500  # maximum number of frames of a GIF, for files of moderate size
 
 _LIFTED = "The forces include the vertical ground motion; the animation does not show this motion."

@@ -102,6 +102,8 @@ def test_simulate_suggests_files_that_it_writes(run, file, tmp_path):
     assert "-o picture.png" in out
     code, _, err = run(*command, "--output", tmp_path / "response.html")
     assert code == 2
-    assert "for a body without restraints; save a picture (.png or .svg)" in err
+    assert "for a single body without restraints and isolators; save a picture (.png or .svg)" in err
     free = run("simulate", file(BLOCK, "block.toml"), *command[2:])[1]
     assert "-o animation.html" in free
+    isolated = run("simulate", file(ISOLATED, "isolated.toml"), *command[2:4])[1]
+    assert "-o picture.png" in isolated
