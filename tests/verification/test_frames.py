@@ -273,6 +273,7 @@ def test_energy_closes_under_a_pulse():
 
 @pytest.mark.verifies("behaviour")
 def test_columns_that_would_tilt_the_beam_are_refused():
+    """Columns of another height, width or shape are refused."""
     for other in (
         rk.Block(width=1.0, height=4.01, mass=1.0), rk.Block(width=1.2, height=4.0, mass=1.0),
         rk.Section.from_points([(0, 0), (1, 0), (1.1, 4.0), (0.1, 4.0)], 2000.0),
@@ -284,6 +285,7 @@ def test_columns_that_would_tilt_the_beam_are_refused():
 @pytest.mark.parametrize("model", ["ked", "contact-bed", "plastic-winkler", "shifted-impulse:k=0.5"])
 @pytest.mark.verifies("behaviour")
 def test_models_of_single_bodies_are_refused(model):
+    """A restitution model of single bodies is refused for a frame."""
     frame = rk.Frame([COLUMN] * 2, 1000.0)
     with pytest.raises(InvalidValueError, match="applies to single bodies; for a frame use housner"):
         rk.simulate(frame, rk.pulses.sine(4.0, 1.0), restitution=model)
