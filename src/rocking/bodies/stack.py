@@ -141,7 +141,7 @@ class Stack:
             start, end = (below + value for value in top_edge(self.bodies[index - 1]))
             left, right = (above + value for value in self.bodies[index].local_feet)
             if not min(end, right) > max(start, left):
-                raise GeometryError("body {number} does not stand on the body below", number=index + 1)
+                raise GeometryError("body {number} has no support on the body below", number=index + 1)
             joints.append(Joint(height, max(start, left), min(end, right), left >= start, right <= end))
         return tuple(joints)
 
