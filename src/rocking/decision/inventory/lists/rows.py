@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection, Sequence
 from pathlib import Path, PureWindowsPath
 from typing import Any
 
-from rocking.bodies import Block, Body, Isolated, Restrained, Section, Solid
+from rocking.bodies import Block, Body, Isolated, Restrained, Section, Solid, Stack
 from rocking.bodies.formats import read_body
 from rocking.bodies.frame import refuse_frame
 from rocking.decision.inventory.lists.cells import CellMeasure, is_missing
@@ -272,9 +272,11 @@ def body_of(name: str, units: Any, find: Callable[[str], Path] | None) -> dict[s
     if isinstance(body, (Block, Section)):
         body = Solid.from_section(body)
     refuse_frame(body)
-    if isinstance(body, Isolated):
-        raise InvalidValueError("{file}: an inventory does not support isolated bases", file=name)
-    if isinstance(body, (Body, Restrained)):
+    if isinstance(body, (Restrained, Isolated, Stack)):
+        raise InvalidValueError(
+            "{file}: an inventory needs a body without restraints, isolated base and joints", file=name
+        )
+    if isinstance(body, Body):
         raise InvalidValueError("{file}: mass points define no shape in three dimensions", file=name)
     size = body.box[1] - body.box[0]
     return {"solid": body, **dict(zip(("width", "depth", "height"), size.tolist(), strict=True))}
