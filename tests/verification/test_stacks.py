@@ -303,7 +303,7 @@ def test_refusals_of_stacks():
     """The refusals of impossible stacks contain the number of the joint or body."""
     with pytest.raises(GeometryError, match="joint 2 does not support"):
         stack((1.0, 1.0), (1.0, 1.0), offsets=0.6)
-    with pytest.raises(GeometryError, match="body 2 does not stand"):
+    with pytest.raises(GeometryError, match="body 2 has no support"):
         stack((1.0, 1.0), (1.0, 1.0), offsets=2.0)
     with pytest.raises(GeometryError, match="horizontal top edge"):
         rk.Stack([rk.Section.from_points([(0, 0), (1, 0), (0.5, 2)]), rk.Block(width=0.1, height=0.1)])

@@ -238,7 +238,7 @@ def of_no_kind(restitution: object) -> str:
 
 def coefficients_of(restitution: Any, body: Body) -> tuple[dict[Foot, float], str]:
     """Return the coefficients for landing left and right [-], and their label."""
-    if restitution == DEFAULT_RESTITUTION and isinstance(body, Frame):
+    if isinstance(body, Frame) and isinstance(restitution, str) and restitution == DEFAULT_RESTITUTION:
         return {foot: Housner().coefficient(body, foot) for foot in FEET}, FRAME_RESTITUTION
     if isinstance(restitution, (str, RestitutionModel)):
         resolved = model(restitution)
@@ -336,7 +336,7 @@ def coefficient_of_restitution(
     >>> [round(rk.coefficient_of_restitution(cabinet, "housner", foot=foot), 4) for foot in ("left", "right")]
     [0.7818, 0.6825]
     """
-    if restitution == DEFAULT_RESTITUTION and isinstance(body, Frame):
+    if isinstance(body, Frame) and isinstance(restitution, str) and restitution == DEFAULT_RESTITUTION:
         restitution = Housner.name
     if isinstance(restitution, (str, RestitutionModel)):
         return model(restitution, eta=eta, **parameters).coefficient(body, foot)

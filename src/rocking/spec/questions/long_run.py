@@ -52,13 +52,11 @@ class BifurcationTable(HarmonicTable):
         description="increasing values of the axis",
         json_schema_extra={"usual": "0.2 to 4", "allowed": "increasing numbers > 0"},
     )
-    starts: int = key(
-        "number of initial states: one at rest, the others at random velocities after an impact", 4, ge=1, le=10_000
-    )
+    starts: int = key("number of initial states: one at rest, others random", 4, ge=1, le=10_000)
     sweeps: Annotated[list[Sweep], Field(min_length=1, max_length=3), BeforeValidator(_words)] = key(
         "sweeps with memory: none, up, down", ["none"]
     )
-    settled: int = key("number of periods before the stored periods", 300, ge=0, le=1_000_000)
+    settled: int = key("periods before the stored periods", 300, ge=0, le=1_000_000)
     kept: int = key("number of stored periods", 128, ge=1, le=100_000)
     exponents: bool = key("largest Lyapunov exponents", True)
 
