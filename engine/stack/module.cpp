@@ -15,8 +15,8 @@ template <class T>
 using Table = nb::ndarray<T, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 
 // Columns. Bodies: mass, inertia, corners of base and top from the centre (left, right, height of base; left, right, height of top),
-// position, velocity, rotation, angular velocity. Joints: friction, restitution, slow speed, width, weight above.
-constexpr std::size_t kBody = 14, kJoint = 5, kOfJoint = 6, kOfBody = 5, kTotals = 4;
+// position, velocity, rotation, angular velocity. Joints: friction, restitution, slow speed, width, offset, weight above.
+constexpr std::size_t kBody = 14, kJoint = 6, kOfJoint = 7, kOfBody = 5, kTotals = 4;
 
 static void expect(bool fine, const char* message) {
     if (!fine) throw std::invalid_argument(message);
@@ -31,7 +31,7 @@ static Run run_of(const double* b, const double* j, std::size_t n, const Setting
         run.bodies.push_back({1.0 / b[0], 1.0 / b[1], b[2], b[3], b[4], b[5], b[6], b[7]});
         run.mass.push_back(b[0]), run.inertia.push_back(b[1]);
         run.at.push_back({{b[8], b[9]}, b[12]}), run.moves.push_back({{b[10], b[11]}, b[13]});
-        run.laws.push_back({j[0], j[1], j[2], j[3]}), run.weight_above.push_back(j[4]);
+        run.laws.push_back({j[0], j[1], j[2], j[3], j[4]}), run.weight_above.push_back(j[5]);
         run.size = std::min(run.size, std::sqrt(b[2] * b[2] + b[4] * b[4]));
     }
     run.begin();
@@ -86,7 +86,7 @@ static nb::tuple trace(Table<const double> bodies, Table<const double> joints, T
     double* out = of_joints.data();
     for (std::size_t k = 0; k < n; ++k) {
         const Extremes& e = run.extremes[k];
-        const double values[kOfJoint] = {e.opening, e.slip, e.normal, e.ratio, e.slip_time, e.displacement};
+        const double values[kOfJoint] = {e.opening, e.slip, e.normal, e.ratio, e.slip_time, e.gap, e.flight_time};
         std::copy(values, values + kOfJoint, out + k * kOfJoint);
     }
     nb::list events;

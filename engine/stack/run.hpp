@@ -7,7 +7,7 @@
 
 namespace rocking::stack {
 
-enum Outcome : std::int64_t { kNoUplift = 0, kRocked = 1, kOverturned = 2, kFailed = 3, kSlid = 4, kRockedAndSlid = 5 };
+enum Outcome : std::int64_t { kNoUplift = 0, kRocked = 1, kOverturned = 2, kFailed = 3, kSlid = 4, kRockedAndSlid = 5, kFlew = 6 };
 enum Status : std::int64_t { kGood = 0, kInvalid = 1, kNotFinite = 2, kTooManyEvents = 3 };
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kFar = 1e300;
 constexpr double kOpen = 1e-5, kDisplaced = 1e-5;  // as in the response: opening [rad], displacement over the width
@@ -15,6 +15,7 @@ constexpr int kCorrections = 4;
 
 struct Law {
     double friction, restitution, slow, width;
+    double offset;  // position of the upper body from the lower body along the closed joint, at rest
 };
 
 struct Velocity {
@@ -23,7 +24,7 @@ struct Velocity {
 };
 
 struct Extremes {
-    double opening = 0.0, slip = 0.0, normal = kFar, ratio = 0.0, slip_time = kNan, displacement = 0.0;
+    double opening = 0.0, slip = 0.0, normal = kFar, ratio = 0.0, slip_time = kNan, displacement = 0.0, gap = 0.0, flight_time = kNan, contact = 0.0;  // contact: end of the last step with a normal force
 };
 
 struct Settings {
@@ -106,12 +107,13 @@ class Run {
     void finish() {
         for (std::size_t row : pending_) write_after(row);
         pending_.clear();
-        bool rocks = false, slides = false;
+        bool rocks = false, slides = false, flies = false;
         for (std::size_t k = 0; k < laws.size(); ++k) {
             extremes[k].opening = std::max(extremes[k].opening, std::fabs(at[k + 1].angle - at[k].angle));
             rocks |= extremes[k].opening > kOpen, slides |= extremes[k].slip > kDisplaced * laws[k].width;
+            flies |= extremes[k].flight_time >= 0.0;
         }
-        outcome = fallen >= 0 ? kOverturned : rocks && slides ? kRockedAndSlid : rocks ? kRocked : slides ? kSlid : kNoUplift;
+        outcome = fallen >= 0 ? kOverturned : flies ? kFlew : rocks && slides ? kRockedAndSlid : rocks ? kRocked : slides ? kSlid : kNoUplift;
         if (status != kGood) outcome = kFailed;
     }
 
@@ -246,21 +248,29 @@ class Run {
         const double normal = j.impulse[0] + j.impulse[1];
         e.opening = std::max(e.opening, std::fabs(at[k + 1].angle - at[k].angle));
         if (time > 0.0) e.normal = std::min(e.normal, normal / (h * weight_above[k]));
+        const int guide = guide_[k];
+        const State upper = moved(k + 1, h, after_[k + 1]), lower = moved(k, h, after_[k]);
+        const Measure end = measure(corners_[k][guide], upper, next_[k + 1], lower, next_[k]);
+        const double last = e.displacement, other = measure(corners_[k][1 - guide], upper, next_[k + 1], lower, next_[k]).gap;
+        e.displacement = end.along - at_rest(k, corners_[k][guide]), e.slip = std::max(e.slip, std::fabs(e.displacement));
+        e.gap = std::max(e.gap, std::min(end.gap, other));
+        if (e.gap > kOpen * laws[k].width && !(e.flight_time >= 0.0)) e.flight_time = e.contact;
         if (normal > 0.0) {
+            e.contact = time + h;
             e.ratio = std::max(e.ratio, std::fabs(j.impulse[2]) / normal);
-            const Measure end = measure(corners_[k][guide_[k]], moved(k + 1, h, after_[k + 1]), next_[k + 1], moved(k, h, after_[k]), next_[k]);
-            const double slip = end.along - found_[k][guide_[k]].along;
-            e.displacement += slip, e.slip = std::max(e.slip, std::fabs(e.displacement));
-            if (j.slides && std::fabs(slip) > 1e-9 * laws[k].width && !(e.slip_time >= 0.0)) e.slip_time = time;
+            if (j.slides && std::fabs(e.displacement - last) > 1e-9 * laws[k].width && !(e.slip_time >= 0.0)) e.slip_time = time;
         }
         for (int i = 0; i < 2; ++i) {
             if (!struck_[k][i] || !(j.impulse[i] > 0.0)) continue;
-            const double approach = speed(rows_[k][i][0], before[k + 1], before[k]), last = noted_[k];
+            const double approach = speed(rows_[k][i][0], before[k + 1], before[k]), noted = noted_[k];
             noted_[k] = time;
-            if (time - last < 1.5 * h) continue;  // the second step of the same impact
+            if (time - noted < 1.5 * h) continue;  // the second step of the same impact
             record(k, time + std::clamp(found_[k][i].gap / -approach, 0.0, h), before);
         }
     }
+
+    // Position of a corner along the closed joint, without displacement.
+    double at_rest(std::size_t k, const Corner& c) const { return c.above ? laws[k].offset + c.own.x : laws[k].offset - c.own.x; }
 
     void record(std::size_t k, double time, const std::vector<Velocity>& before) {
         const std::size_t n = laws.size();

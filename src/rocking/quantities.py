@@ -225,7 +225,10 @@ _RESTRAINTS = (
 _STACK = (
     Quantity("joint", "1", "number of the joint below a body; 1 is the joint on the ground"),
     Quantity(
-        "joint_state", "", "monolithic, rocking, sliding, rocking and sliding, overturned, or slid off", label="state"
+        "joint_state",
+        "",
+        "monolithic, rocking, sliding, rocking and sliding, in flight, overturned, or slid off",
+        label="state",
     ),
     Quantity("joint_event", "", "opens, impact, closes, or turning point (peak)", label="event"),
     Quantity("corners_before", "", "corners in contact before the event, lowest joint first", label="before"),

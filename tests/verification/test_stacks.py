@@ -16,10 +16,12 @@ import rocking as rk
 from rocking.dynamics.stack.chain import Chain
 from rocking.dynamics.stack.contact_choice import corner_rows, under_forces
 from rocking.dynamics.stack.time_stepping import COMPILED
-from rocking.dynamics.stack.trajectory import IMPACT, OPENS, PEAK
+from rocking.dynamics.stack.trajectory import CLOSES, IMPACT, OPENS, PEAK
 from rocking.errors import GeometryError, InvalidValueError
+from rocking.outcome import Regime, Status
 
 pytestmark = pytest.mark.verifies(room="rocking in the plane")
+fast = pytest.mark.skipif(not COMPILED.available(), reason="the compiled engine of stacks was not built")
 
 G = 9.81
 
@@ -315,9 +317,113 @@ def test_refusals_of_stacks():
         rk.free_rocking(stack((1.0, 2.0)), rotation=(0.1, 0.2))
 
 
-# Time stepping
+def shaking(rng, amplitude, count=300, step=0.01):
+    values = np.convolve(rng.normal(size=count), np.hanning(9), "same")
+    values[0] = 0.0
+    return rk.GroundMotion(values / np.abs(values).max() * amplitude, step)
 
-fast = pytest.mark.skipif(not COMPILED.available(), reason="the compiled engine of stacks was not built")
+
+@pytest.mark.parametrize("seed", [9, 14, 17])
+@pytest.mark.filterwarnings("ignore::rocking.errors.PureRockingWarning")
+@pytest.mark.verifies("invariant", "energy of closing joints", within="1e-9")
+def test_closing_joints_create_no_energy(seed):
+    """Random stacks under both components: the lost energy never falls, also where chattering joints close."""
+    rng = np.random.default_rng(seed)
+    sizes = zip(rng.uniform(0.4, 1.2, 2).tolist(), rng.uniform(0.5, 2.0, 2).tolist(), strict=True)
+    body = stack(*sizes, offsets=float(rng.uniform(-0.08, 0.08)))
+    uplift = min(body.side_above(k, foot).uplift_acceleration for k in (0, 1) for foot in ("left", "right"))
+    response = rk.simulate(body, {"x": shaking(rng, 1.5 * uplift), "z": shaking(rng, 1.0)}, duration=3.3)
+    run = response.trajectory
+    assert sum(event.kind == CLOSES for event in run.events) > 30
+    assert np.diff(run.lost).min() >= -1e-9 * run.lost[-1]
+    assert response.energy_closure < 1e-9
+
+
+@pytest.mark.parametrize("friction", [None, pytest.param(5.0, marks=fast)])
+@pytest.mark.filterwarnings("ignore::rocking.errors.PureRockingWarning")
+@pytest.mark.parametrize("low", [(), ((1.5, 0.5),)], ids=["one", "two"])
+@pytest.mark.verifies("second engine", "outcome of the plane engine", within="")
+def test_a_fall_after_the_end_is_overturning(friction, low):
+    """A stated duration that ends in the fall gives the outcome of the block, and the time of the longer history."""
+    block, pulse = rk.Block(width=0.5, height=2.0), rk.pulses.sine(4.0, 0.8)
+    body = rk.Stack([*stack(*low).bodies, block] if low else [block], friction=friction)
+    longer, cut, gentle = (
+        rk.simulate(body, pulse, scale=s, duration=d) for s, d in ((1.0, 5.0), (1.0, 1.2), (0.7, 0.3))
+    )
+    assert rk.simulate(block, pulse, "housner", duration=1.2).outcome is rk.Outcome.OVERTURNED
+    assert (cut.outcome, cut.joint_states[-1]) == (rk.Outcome.OVERTURNED, "overturned")
+    assert cut.time[-1] == pytest.approx(1.2, abs=0.02)  # a sample
+    assert cut.overturning_time == pytest.approx(longer.overturning_time, abs=0.01)  # a sample
+    assert cut.peak_rotation == pytest.approx(0.5 * np.pi)
+    assert not cut.still_rocking
+    assert gentle.outcome is rk.Outcome.ROCKED  # negative control
+
+
+def lifted(amplitude, horizontal=0.0, step=0.005):
+    """Return one period of a vertical sine, and a horizontal sine."""
+    t = np.arange(0.0, 2.0, step)
+    z = amplitude * np.sin(2.0 * np.pi * t / 0.4) * (t < 0.4)
+    x = horizontal * np.sin(2.0 * np.pi * t) * (t < 1.0)
+    return {"x": rk.GroundMotion(x, step), "z": rk.GroundMotion(z, step)}
+
+
+@pytest.mark.filterwarnings("ignore::rocking.errors.PureRockingWarning")
+@pytest.mark.verifies("damage")
+def test_a_joint_without_contact_names_the_friction():
+    """Two blocks thrown up by a vertical motion stop the engine without flight, and the text proposes the friction."""
+    response = rk.simulate(stack((1.0, 1.0), (0.6, 1.0)), lifted(-15.0), duration=1.0)
+    assert response.status is Status.LOST_CONTACT
+    assert response.summary.endswith("Stack(..., friction=0.6)")
+    held = rk.simulate(stack((1.0, 1.0), (0.6, 1.0)), lifted(-5.0), duration=1.0)
+    assert "friction" not in held.summary  # negative control: less than gravity
+
+
+@pytest.mark.verifies("damage")
+def test_tops_of_two_points_are_no_edge():
+    """A U and an M have two highest edges or vertices, and carry neither a body nor a beam; a flat top does."""
+    u = [(0, 0), (2, 0), (2, 1), (1.8, 1), (1.8, 0.3), (0.2, 0.3), (0.2, 1), (0, 1)]
+    m = [(0, 0), (2, 0), (2, 1), (1, 0.2), (0, 1)]
+    flat = [(0, 0), (2, 0), (2, 1), (1, 1), (0, 1)]  # with a vertex in the edge
+    small = rk.Block(width=0.5, height=1.0)
+    for points in (u, m):
+        section = rk.Section([rk.Region(points, density=2000.0)])
+        with pytest.raises(GeometryError, match="horizontal top edge"):
+            rk.Stack([section, small])
+        with pytest.raises(GeometryError, match="horizontal top edge"):
+            rk.Frame([section], beam_mass=100.0)
+    section = rk.Section([rk.Region(flat, density=2000.0)])
+    assert rk.Stack([section, small]).joints[1].width == pytest.approx(0.5)
+    assert rk.Frame([section], beam_mass=100.0).side("left").frequency_parameter > 0.0
+
+
+@pytest.mark.parametrize("value", ["abc", [0.1, "a"], [0.1, [0.1, 0.2]], 0.1j, True, 2.0, None], ids=repr)
+@pytest.mark.verifies("damage")
+def test_rotations_that_are_no_numbers(value):
+    """Texts, ragged lists, complex numbers, truth values and more than a quarter turn are refused by name."""
+    with pytest.raises(InvalidValueError) as refused:
+        rk.free_rocking(stack((1.0, 2.0), (1.0, 2.0)), rotation=value)
+    assert refused.value.parameter == "rotation"
+
+
+@pytest.mark.verifies("damage")
+def test_inputs_of_stacks():
+    """Other refusals with the name of the parameter; a stack at rest has no energy balance error."""
+    body, block = stack((1.0, 2.0), (1.0, 2.0)), rk.Block(width=1.0, height=2.0)
+    impact = rk.dynamics.stack_impact
+    for parameter, refused_input in {
+        "angular_velocity": lambda: rk.free_rocking(body, rotation=0.1, angular_velocity=1e9),
+        "bodies": lambda: rk.Stack(None),
+        "offsets": lambda: rk.Stack([block], offsets=0.3),
+        "stack": lambda: impact(block, 1, (1,), (-1.0,)),
+        "sides": lambda: impact(body, 1, 1, (-1.0, -2.0)),
+    }.items():
+        with pytest.raises(InvalidValueError) as refused:
+            refused_input()
+        assert refused.value.parameter == parameter
+    assert rk.free_rocking(body, rotation=0.0, duration=0.5).energy_closure == 0.0
+
+
+# Time stepping
 
 
 def stepped(case, step, friction=5.0):
@@ -400,6 +506,28 @@ def test_sliding_of_a_block():
     assert response.outcome is rk.Outcome.SLID
     assert response.joint_states == ("sliding",)
     assert response.trajectory.lost[-1] == pytest.approx(response.trajectory.work[-1], rel=1e-9)
+
+
+@fast
+@pytest.mark.parametrize("count", [1, 2])
+@pytest.mark.parametrize("horizontal", [0.0, 6.0])
+@pytest.mark.verifies("second engine", "the plane engine with flight", within="1e-3", control="within")
+def test_flight_of_a_stack(horizontal, count):
+    """Blocks thrown up: time, gap and displacement are those of the plane engine with flight, and the text has them."""
+    block, motion = rk.Block(width=1.0, height=1.0, mass=1000.0), lifted(-25.0, horizontal)
+    expected = rk.simulate(block, motion, None, friction=10.0, duration=2.0)
+    response = rk.simulate(rk.Stack([block] * count, friction=10.0), motion, duration=2.0)
+    run = response.trajectory
+    assert response.outcome is expected.outcome is rk.Outcome.FLEW
+    assert response.joint_states[0] == "in flight"
+    assert "the bodies above joint 1 flew" in response.summary
+    assert run.largest_gap[0] == pytest.approx(expected.rise.max(), abs=1e-3)
+    assert response.joint_displacement[-1, 0] == pytest.approx(expected.displacement[-1], abs=1e-3)
+    departure = next(start for start, _, mode in expected.trajectory.intervals if mode.regime is Regime.FLIGHT)
+    assert run.flight_time[0] == pytest.approx(departure, abs=1e-3)
+    gentle = rk.simulate(rk.Stack([block] * count, friction=10.0), lifted(-9.0), duration=2.0)
+    assert gentle.outcome is rk.Outcome.NO_UPLIFT  # negative control: less than gravity
+    assert gentle.joint_states == ("monolithic",) * count
 
 
 def drums(count, **options):

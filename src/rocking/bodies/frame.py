@@ -12,6 +12,7 @@ from rocking.bodies.block import Block
 from rocking.bodies.body import GROUND_TOLERANCE, Body, Interval, Side
 from rocking.bodies.moments import PlaneMoments
 from rocking.bodies.section import Section
+from rocking.bodies.top_edge import top_edge
 from rocking.conventions import FEET, Assumed, Foot, opposite
 from rocking.errors import GeometryError, InvalidValueError
 
@@ -263,11 +264,7 @@ def refuse_frame(body: Any) -> Any:
 
 
 def _column(column: Body) -> _Column:
-    """Return the geometry of a column. The top consists of all vertices at the largest height."""
+    """Return the geometry of a column."""
     (left, right), moments = column.local_feet, column.local_moments
-    low, _, high, height = column.local_box
-    if isinstance(column, Section):
-        vertices = np.vstack([region.outline for region in column.regions])
-        top = vertices[vertices[:, 1] >= height * (1.0 - GROUND_TOLERANCE), 0]
-        low, high = float(top.min()), float(top.max())
-    return _Column(moments, moments.x - left, right - left, (low - left, high - left, height))
+    low, high = top_edge(column)
+    return _Column(moments, moments.x - left, right - left, (low - left, high - left, column.local_box[3]))

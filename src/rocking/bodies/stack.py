@@ -1,7 +1,7 @@
 """Plane bodies on each other: drums of a column, a showcase on a pedestal, courses of a wall."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -16,11 +16,11 @@ from rocking.bodies.isolated import Isolated
 from rocking.bodies.mass_points import MassPoints
 from rocking.bodies.restrained import Restrained
 from rocking.bodies.section import Section
+from rocking.bodies.top_edge import top_edge
 from rocking.conventions import Foot
 from rocking.errors import GeometryError, InvalidValueError
 
 MOST_BODIES = 100
-_FLAT = 1e-9  # largest height of a vertex below the top edge, over the height of the body
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,8 @@ class Stack:
         restitution: float | Sequence[float] = 0.0,
         offsets: float | Sequence[float] = 0.0,
     ) -> None:
-        listed = tuple([bodies] if isinstance(bodies, Body) else bodies)
+        entries: Any = bodies
+        listed = tuple(entries) if isinstance(entries, Iterable) else (entries,)
         for body in listed:
             checks.of_kind("bodies", body, (Block, Section, MassPoints), "a Block, Section or MassPoints")
         count = checks.whole("number of bodies", len(listed), 1, MOST_BODIES)
@@ -261,19 +262,6 @@ PLANE_BODIES = (Body, Restrained, Isolated, Stack)
 """Classes of plane bodies: alone, with restraints, on an isolated base, and on each other."""
 
 
-def top_edge(body: Body) -> tuple[float, float]:
-    """Return the ends of the horizontal top edge of a body in its local frame [m]."""
-    left, low, right, high = body.local_box
-    if isinstance(body, Block):
-        return left, right
-    if isinstance(body, Section):
-        points = np.vstack([region.outline for region in body.regions])
-        top = points[points[:, 1] >= high - _FLAT * (high - low), 0]
-        if np.ptp(top) > _FLAT * (right - left):
-            return float(top.min()), float(top.max())
-    raise GeometryError("{type} below another body needs a horizontal top edge", type=type(body).__name__)
-
-
 def _per_joint(name: str, values: Any, count: int, high: float, **options: Any) -> tuple[float, ...]:
     """Return one coefficient per joint; infinite without values."""
     if values is None:
@@ -287,7 +275,7 @@ def _per_joint(name: str, values: Any, count: int, high: float, **options: Any) 
 
 
 def _offsets(values: Any, count: int) -> tuple[float, ...]:
-    listed = [values] * count if np.ndim(values) == 0 else list(values)
+    listed = [values] * (count or values != 0.0) if np.ndim(values) == 0 else list(values)
     if len(listed) != count:
         raise InvalidValueError(
             parameter="offsets", allowed="one value per body above the lowest body", value=len(listed)

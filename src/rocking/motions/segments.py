@@ -89,6 +89,12 @@ class Segments:
         return int(self.horizontal.shape[1]) - 1
 
     @property
+    def moving(self) -> int:
+        """Number of segments up to the last horizontal or vertical motion; 0 for ground at rest."""
+        tables = [self.horizontal] if self.vertical is None else [self.horizontal, self.vertical]
+        return int(max(np.flatnonzero(table.any(axis=1)).max(initial=-1) for table in tables)) + 1
+
+    @property
     def duration(self) -> float:
         """Duration of all segments [s]."""
         return self.count * self.step

@@ -64,9 +64,16 @@ def after_impact(
     rotation: Sequence[float],
     rates: Sequence[float],
     flat: set[int],
+    *,
+    keeps_contact: bool = False,
 ) -> CornerSolution:
-    """Return the velocities after a plastic impact of the open joints in `flat`. The other flat joints are closed."""
+    """Return the velocities after a plastic impact of the open joints in `flat`. The other flat joints are closed.
+
+    With `keeps_contact`, no corner leaves the contact: the projection has equalities only.
+    """
     rows = corner_rows(chain, sides, rotation, flat)
+    for row in rows:
+        row.is_one_sided = row.is_one_sided and not keeps_contact
     velocities = chain.velocities(sides, rotation, rates)
     before = [value for v, rate in zip(velocities, rates, strict=True) for value in (*v, rate)]
     jacobian = _jacobian(chain, sides, rotation, rows)

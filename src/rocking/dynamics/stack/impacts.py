@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from rocking import checks, conventions
 from rocking.bodies.stack import Stack
 from rocking.dynamics.stack.chain import Chain
@@ -86,9 +88,10 @@ def stack_impact(
     >>> impact.sides, round(68.0 * impact.angular_velocity[1], 9)  # the lower block stops
     ((0, -1), -83.0)
     """
+    checks.of_kind("stack", stack, Stack, "a Stack")
     count = len(stack.bodies)
     index = checks.whole("joint", joint, 1, count) - 1
-    corners = tuple(checks.whole("sides", side, -1, 1) for side in sides)
+    corners = tuple(checks.whole("sides", side, -1, 1) for side in (sides if np.ndim(sides) else [sides]))
     if len(corners) != count:
         raise InvalidValueError(parameter="sides", allowed=f"{count} values of -1, 0 and 1", value=sides)
     chain = Chain.of(stack, conventions.g)

@@ -76,15 +76,13 @@ class StackReference:
         samples = [self._sample()]
         self.index, self.start = 0, 0.0
         self._note_extremes()
-        moving = np.flatnonzero(self.segments.horizontal.any(axis=1))
-        quiet = int(moving[-1]) + 1 if moving.size and self.scale else 0
+        is_free = not self.segments.moving
         fallen = -1
         for index in range(self.segments.count):
             self._follow(index)
             samples.append(self._sample())
             fallen = self._fallen()
-            at_rest = index >= quiet and not any(self.sides)
-            if fallen >= 0 or self.status is not Status.GOOD or (at_rest and index + 1 >= quiet and not moving.size):
+            if fallen >= 0 or self.status is not Status.GOOD or (is_free and not any(self.sides)):
                 break
         return self._result(samples, fallen)
 
@@ -177,11 +175,8 @@ class StackReference:
         self._equal_rotation(joint)
         sides = tuple(0 if k == joint else side for k, side in enumerate(self.sides))
         flat = {k for k, side in enumerate(sides) if side == 0}
-        solution = after_impact(self.chain, self.sides, self._rotation, self._rates, flat)
-        rates = [solution.motion[3 * k + 2] for k in range(self.count)]
-        for k in flat:  # the bodies of a closed joint have one angular velocity
-            rates[k] = rates[k - 1] if k else 0.0
-        self._change(joint, CLOSES, sides, rates, solution)
+        solution = after_impact(self.chain, self.sides, self._rotation, self._rates, flat, keeps_contact=True)
+        self._change(joint, CLOSES, sides, [solution.motion[3 * k + 2] for k in range(self.count)], solution)
 
     def _open(self, joint: int, side: int) -> None:
         sides = tuple(side if k == joint else own for k, own in enumerate(self.sides))

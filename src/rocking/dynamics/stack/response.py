@@ -14,14 +14,14 @@ from rocking.conventions import DEFAULT_RESTITUTION, FEET, FloatArray
 from rocking.dynamics.response_base import ResponseBase, followed, ground_at_rest, motion_provenance
 from rocking.dynamics.stack.engines import run
 from rocking.dynamics.stack.settings import StackSettings
-from rocking.dynamics.stack.start import values_per_body
+from rocking.dynamics.stack.start import start_within
 from rocking.dynamics.stack.trajectory import IMPACT, StackTrajectory
 from rocking.errors import InvalidValueError, PureRockingWarning
 from rocking.messages import Message
 from rocking.motions.pulse import Motion
 from rocking.motions.segments import Segments
 from rocking.motions.summary import motion_answer
-from rocking.outcome import Outcome
+from rocking.outcome import Outcome, Status
 from rocking.tables import Table
 
 if TYPE_CHECKING:
@@ -97,9 +97,11 @@ class StackResponse(ResponseBase):
 
     @property
     def peak_rotation(self) -> float:
-        """Largest rotation of a body at the samples and turning points [rad]."""
+        """Largest rotation of a body at samples and turning points, at least a quarter turn if it overturns [rad]."""
         turning = [angle for event in self.trajectory.events for angle in event.rotation]
-        return float(max(np.max(np.abs(self.rotation)), np.max(np.abs(turning), initial=0.0)))
+        turns = self.outcome is Outcome.OVERTURNED and not self.is_slid_off
+        lowest = 0.5 * math.pi if turns else 0.0
+        return float(max(np.max(np.abs(self.rotation)), np.max(np.abs(turning), initial=lowest)))
 
     @cached_property
     def ground_acceleration(self) -> FloatArray:
@@ -114,21 +116,22 @@ class StackResponse(ResponseBase):
         run = self.trajectory
         stored = run.kinetic + run.potential
         scale = max(float(np.max(np.abs(values))) for values in (stored, run.work, run.lost))
-        return float(np.max(np.abs(stored - stored[0] - run.work + run.lost))) / max(scale, 1e-300)
+        return float(np.max(np.abs(stored - stored[0] - run.work + run.lost))) / scale if scale else 0.0
 
     @property
     def is_slid_off(self) -> bool:
         """True if a body has left the face of the body below by sliding."""
-        return self.trajectory.fallen >= 0 and float(np.max(np.abs(self.rotation[-1]))) < 0.49 * math.pi
+        return self.trajectory.slid_off
 
     @cached_property
     def joint_states(self) -> tuple[str, ...]:
-        """State of every joint: monolithic, rocking, sliding, rocking and sliding, overturned, or slid off."""
+        """State of every joint: monolithic, rocking, sliding, rocking and sliding, in flight, overturned, slid off."""
         run, states, end = self.trajectory, [], "slid off" if self.is_slid_off else "overturned"
         for index, joint in enumerate(self.body.joints):
             rocks, slides = run.peak_opening[index] > _OPEN, run.peak_slip[index] > _SLID * joint.width
             state = "rocking and sliding" if rocks and slides else "rocking" if rocks else "sliding"
-            states.append(end if index == run.fallen else state if rocks or slides else "monolithic")
+            state = "in flight" if math.isfinite(run.flight_time[index]) else state if rocks or slides else "monolithic"
+            states.append(end if index == run.fallen else state)
         return tuple(states)
 
     @cached_property
@@ -219,6 +222,16 @@ class StackResponse(ResponseBase):
         return {"peak_rotation": self.peak_rotation}
 
     @property
+    def summary(self) -> str:
+        """The outcome in one sentence, with a hint if a joint loses its contact in an engine without flight."""
+        if self.status is not Status.LOST_CONTACT:
+            return super().summary
+        hint = Message(
+            "state the friction of the joints, for the engine with sliding and flight: Stack(..., friction=0.6)"
+        )
+        return Message.followed(super().summary, hint)
+
+    @property
     def _ending(self) -> str:
         run = self.trajectory
         if run.outcome in {Outcome.NO_UPLIFT, Outcome.FAILED, Outcome.SLID}:
@@ -228,6 +241,13 @@ class StackResponse(ResponseBase):
             if self.is_slid_off:
                 return Message("overturned: the bodies above joint {joint} slid off at {time:.4g} s", facts)
             return Message("overturned at joint {joint}, quarter turn at {time:.4g} s", facts)
+        if run.outcome is Outcome.FLEW:
+            joint = int(np.nanargmin(run.flight_time))
+            return Message(
+                "the bodies above joint {joint} flew but did not overturn: no contact from {time:.4g} s, largest gap "
+                "{gap:.3g} m",
+                {"joint": joint + 1, "time": float(run.flight_time[joint]), "gap": float(run.largest_gap[joint])},
+            )
         joint = int(np.argmax(run.peak_opening))
         facts = {"opening": math.degrees(run.peak_opening[joint]), "joint": joint + 1}
         if run.outcome is Outcome.ROCKED_AND_SLID:
@@ -307,14 +327,11 @@ def response_of_stack(
     scale = checks.within("scale", scale, -1e6, 1e6)
     plausibility.warn(plausibility.of_scaled([motion], scale))
     count = len(body.bodies)
-    rotation, rates = (
-        values_per_body(name, values, count)
-        for name, values in zip(("rotation", "angular_velocity"), start, strict=True)
-    )
     frequencies = [
         body.side_above(k, foot, settings.gravity).frequency_parameter for k in range(count) for foot in FEET
     ]
     slow, quick = min(frequencies), max(frequencies)
+    rotation, rates = start_within(start, count, 100.0 * quick)
     if duration is not None:
         checks.positive("duration", duration, "s")
     length = duration or (_FREE if motion is None else motion.duration * slow + _AFTER) / slow

@@ -5,7 +5,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rocking.bodies.stack import Stack, top_edge
+from rocking.bodies.stack import Stack
+from rocking.bodies.top_edge import top_edge
 from rocking.conventions import FEET, FloatArray
 from rocking.dynamics.settings import CompiledEngine
 from rocking.dynamics.stack.chain import Chain
@@ -35,23 +36,23 @@ def time_stepping(
     """Return a history from rotations [rad] and angular velocities [rad/s]."""
     count, step = len(stack.bodies), segments.step
     bodies, joints = _bodies(stack, settings.gravity, rotation, rates), _joints(stack, settings)
-    table, of_joints = np.full((segments.count + 1, 5 * count + 5), np.nan), np.zeros((count, 6))
-    moving = np.flatnonzero(segments.horizontal.any(axis=1))
+    table, of_joints = np.full((segments.count + 1, 5 * count + 5), np.nan), np.zeros((count, 7))
     vertical = _NOTHING if segments.vertical is None else segments.vertical
     written, outcome, status, fallen, time, moves, events, quality = COMPILED.module().trace(
         bodies, joints, np.ascontiguousarray(segments.horizontal), np.ascontiguousarray(vertical), table, of_joints,
         step, scale, settings.gravity, settings.tolerance, settings.most_events,
-        steps_per_segment(stack, segments, settings), int(moving[-1]) + 1 if moving.size else 0, not moving.size,
+        steps_per_segment(stack, segments, settings), segments.moving, not segments.moving,
     )  # fmt: skip
     theta, omega, x, z, slip = np.hsplit(table[:written, 1:-4], 5)
     work, kinetic, potential, lost = table[:written, -4:].T
-    opening, peak_slip, normal, ratio, slip_time, _ = of_joints.T
+    opening, peak_slip, normal, ratio, slip_time, gap, flight_time = of_joints.T
     trajectory = StackTrajectory(
         table[:written, 0], theta, omega, np.stack([x, z], axis=-1), slip, work, kinetic, potential, lost,
         opening, peak_slip, normal, ratio, slip_time, _events(events, count), _OUTCOMES[outcome], _STATUSES[status],
         fallen, time, moves and fallen < 0,
     )  # fmt: skip
     trajectory.assumes_sticking, trajectory.engine = False, FAST
+    trajectory.largest_gap, trajectory.flight_time = gap, flight_time
     trajectory.unsolved_steps, trajectory.interpenetration, trajectory.energy_created = quality
     return trajectory
 
@@ -79,11 +80,12 @@ def _bodies(stack: Stack, gravity: float, rotation: Sequence[float], rates: Sequ
 
 def _joints(stack: Stack, settings: StackSettings) -> FloatArray:
     rows = []
+    offsets = np.diff([x for x, _ in stack.centres], prepend=0.0)
     for k, joint in enumerate(stack.joints):
         sides = [stack.side_above(k, foot, settings.gravity) for foot in FEET]
         slow = settings.rest_speed * min(side.frequency_parameter * side.slenderness_angle for side in sides)
-        friction = min(stack.friction[k], _STICKS)
-        rows.append([friction, stack.restitution[k], slow, joint.width, sides[0].mass * settings.gravity])
+        friction, weight = min(stack.friction[k], _STICKS), sides[0].mass * settings.gravity
+        rows.append([friction, stack.restitution[k], slow, joint.width, offsets[k], weight])
     return np.array(rows, dtype=np.float64)
 
 

@@ -49,12 +49,25 @@ class StackTrajectory:
     fallen: int = -1  # index of the joint whose bodies overturned, -1 without overturning
     overturning_time: float = math.nan  # [s]
     still_rocking: bool = False
+    slid_off: bool = field(init=False)  # True if the fallen bodies left the face below by sliding
+    largest_gap: FloatArray = field(init=False)  # largest distance of the faces [m]; (bodies,)
+    flight_time: FloatArray = field(init=False)  # first time without contact [s], NaN; (bodies,)
     assumes_sticking: bool = True  # True if the engine has no sliding
     engine: str = "reference (Dormand-Prince, order 8)"
 
     unsolved_steps: int = 0  # steps whose complementarity conditions exceed the tolerance
     interpenetration: float = 0.0  # largest, over the semi-diagonal of the smallest body [-]
     energy_created: float = 0.0  # sum of positive works of contact impulses [J]
+
+    def __post_init__(self) -> None:
+        self.largest_gap, self.flight_time = np.zeros(self.peak_slip.size), np.full(self.peak_slip.size, np.nan)
+        self.slid_off = self.fallen >= 0 and float(np.max(np.abs(self.rotation[-1]))) < 0.49 * math.pi
+
+    def take_fall(self, longer: "StackTrajectory") -> None:
+        """Take over the overturning of a longer history. Samples, events and extremes stay those of this history."""
+        if longer.outcome is Outcome.OVERTURNED:
+            for name in ("outcome", "fallen", "overturning_time", "slid_off", "still_rocking"):
+                setattr(self, name, getattr(longer, name))
 
     @property
     def impacts(self) -> int:
