@@ -412,6 +412,7 @@ def test_inputs_of_stacks():
     impact = rk.dynamics.stack_impact
     for parameter, refused_input in {
         "angular_velocity": lambda: rk.free_rocking(body, rotation=0.1, angular_velocity=1e9),
+        "restitution": lambda: rk.free_rocking(body, rotation=0.1, restitution=np.array([0.1, 0.2])),
         "bodies": lambda: rk.Stack(None),
         "offsets": lambda: rk.Stack([block], offsets=0.3),
         "stack": lambda: impact(block, 1, (1,), (-1.0,)),

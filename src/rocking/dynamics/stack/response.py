@@ -319,7 +319,7 @@ def response_of_stack(
     engine: str = "auto",
 ) -> StackResponse:
     """Return the response of a stack. The durations are those of the bodies as one body."""
-    if restitution is not None and restitution != DEFAULT_RESTITUTION:
+    if restitution is not None and (np.ndim(restitution) or restitution != DEFAULT_RESTITUTION):
         raise InvalidValueError(
             "the joints of a stack have their own restitution: Stack(..., restitution=...)", parameter="restitution",
             value=restitution,
