@@ -5,7 +5,7 @@ examples are invented: no real object was measured, and no motion is the record 
 """
 
 from pathlib import Path
-from typing import Any, Literal, overload
+from typing import Any, Literal, cast, overload
 
 from rocking import checks
 from rocking.bodies import Body, Solid
@@ -45,9 +45,7 @@ def body(name: str) -> Body | Solid:
     from rocking.bodies.formats import read_body
 
     example = _of(name, "body")
-    example_body = read_body(path(example.name), **example.options)
-    assert isinstance(example_body, (Body, Solid))  # the examples have no restraints
-    return example_body
+    return cast("Body | Solid", read_body(path(example.name), **example.options))  # the examples have no restraints
 
 
 @overload
