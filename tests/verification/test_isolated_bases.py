@@ -343,3 +343,41 @@ def test_other_analyses_refuse_a_base(analysis):
     """Analyses without isolated bases refuse such a body."""
     with pytest.raises(RockingError, match=r"isolated base|Block, Section|does not support frames"):
         analysis()
+
+
+@pytest.mark.verifies("behaviour")
+def test_a_fall_after_the_stated_duration_is_overturning():
+    """Block and base of 6H1 fall; a response that ends during the fall has the outcome of the complete response."""
+    base, motion = LINEAR, rk.pulses.sine(amplitude=4.0, period=0.8)
+    complete = rk.simulate(base, motion, "housner", gravity=9.81)
+    cut = rk.simulate(base, motion, "housner", gravity=9.81, duration=1.5)
+    assert complete.outcome is cut.outcome is rk.Outcome.OVERTURNED
+    assert cut.overturning_time == pytest.approx(complete.overturning_time, rel=1e-9)
+    assert rk.simulate(base, motion.scaled(0.1), "housner", duration=0.5).outcome is not rk.Outcome.OVERTURNED
+
+
+@pytest.mark.verifies("behaviour")
+def test_downward_motion_without_horizontal_motion_gives_a_result():
+    """The base is accelerated downwards by more than gravity; the impact at velocity zero needs no ratio."""
+    time = np.arange(0.0, 1.0, 0.01)
+    still = rk.GroundMotion(np.zeros(100), 0.01, vertical=np.where(time < 0.2, -12.0, 0.0))
+    base = rk.Isolated(rk.Block(width=0.5, height=2.0, mass=1000.0), base_mass=500.0, friction=0.3)
+    with pytest.warns(rk.errors.PureRockingWarning, match="tensile"):
+        assert rk.simulate(base, still, "housner").lost_contact
+
+
+@pytest.mark.verifies("damage")
+@pytest.mark.parametrize(("name", "value"), [("damping_ratio", ""), ("damping_ratio", 10.0), ("damping_ratio", False)])
+def test_values_that_are_no_ratio_are_refused(name, value):
+    """Text, logical values and percent are no ratio."""
+    with pytest.raises(InvalidValueError, match=name):
+        rk.Isolated(rk.Block(width=0.5, height=2.0, mass=1e3), base_mass=1e3, period=1.2, **{name: value})
+
+
+@pytest.mark.verifies("behaviour")
+def test_an_assumed_density_affects_rotations():
+    """The ratio of the masses decides; a stated mass is not assumed."""
+    free = rk.Isolated(rk.Block(width=0.5, height=2.0), base_mass=1000.0, stiffness=1e5)
+    assert any("it affects rotations" in text for text in free.assumed)
+    stated = rk.Isolated(rk.Block(width=0.5, height=2.0, mass=1e3), base_mass=1e3, stiffness=1e5)
+    assert not any("density" in text for text in stated.assumed)

@@ -545,3 +545,21 @@ def test_forces_of_the_ground_balance():
     assert response.outcome is rk.Outcome.NO_UPLIFT
     assert np.allclose(response.forces.vertical_force, 4000.0 * G + 20e3, rtol=1e-14)
     assert np.allclose(response.forces.horizontal_force, 4000.0 * response.ground_acceleration, atol=1e-9)
+
+
+@pytest.mark.verifies("damage")
+@pytest.mark.parametrize(
+    ("kind", "values", "name"),
+    [
+        (rk.Tendon, {"stiffness": 1e5, "prestress": math.inf}, "prestress"),
+        (rk.Tendon, {"stiffness": math.inf}, "stiffness"), (rk.Spring, {"stiffness": math.inf}, "stiffness"),
+        (rk.Fuse, {"stiffness": math.inf, "yield_force": 1e3}, "stiffness"),
+        (rk.FrictionDamper, {"slip_force": math.inf}, "slip_force"),
+        (rk.ViscousDamper, {"coefficient": math.inf}, "coefficient"),
+    ],
+)  # fmt: skip
+def test_infinite_constants_are_refused(kind, values, name):
+    """Only limits may be infinite."""
+    with pytest.raises(rk.errors.InvalidValueError, match=name):
+        kind(x=0.5, length=0.5, **values)
+    assert rk.Tendon(x=0.5, stiffness=1e5, yield_force=math.inf).damages == ()

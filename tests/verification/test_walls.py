@@ -376,3 +376,15 @@ def test_pushover_into_a_wall():
     alone, wall = (rk.pushover(b, theta) for b in (rk.Restrained(SLENDER, []), at_wall(gap=0.02, height=1.5)))
     d = np.maximum(1.5 * np.sin(-theta) - 0.02, 0.0)
     assert np.allclose(alone.restoring_moment - wall.restoring_moment, 4e4 * d * 1.5 * np.cos(theta), rtol=0, atol=1e-9)
+
+
+@pytest.mark.verifies("behaviour")
+def test_a_body_away_from_a_rigid_wall_may_fall_back():
+    """The velocity at the start points to the wall, but the body is not upright."""
+    tower = rk.Block(width=1.0, height=4.0, mass=2000.0)
+    adjacent = rk.Restrained(tower, rk.Wall(side="left", law="plastic"))
+    response = rk.free_rocking(adjacent, rotation=0.1, angular_velocity=-0.2, restitution=0.9)
+    assert response.impacts.size == 1
+    assert response.rotation[-1] == 0.0
+    with pytest.raises(rk.errors.InvalidValueError, match="rigid"):
+        rk.free_rocking(adjacent, rotation=0.0, angular_velocity=-0.2, restitution=0.9)

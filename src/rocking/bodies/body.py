@@ -394,11 +394,19 @@ _ASSUMED_DENSITY = {  # keys: (all densities are assumed, the densities are scal
 
 
 _ASSUMED_WITH_RESTRAINTS = {
-    (True, False): "{density:g} kg/m3 assumed (plain concrete); with restraints it affects rotations",
+    (True, False): "{density:g} kg/m3 assumed (plain concrete); with restraints or a base it affects rotations",
     (True, True): (
-        "{density:g} kg/m3 assumed (plain concrete), scaled to {scaled:.6g}; with restraints it affects rotations"
+        "{density:g} kg/m3 assumed (plain concrete), scaled to {scaled:.6g}; with restraints or a base it affects "
+        "rotations"
     ),
 }  # fmt: skip
+
+
+def assumed_with_mass(body: Body) -> tuple[str, ...]:
+    """Return the assumed values of a body whose mass affects the rotations, as texts."""
+    density = assumed_density(body.densities, affects_rotations=True)
+    texts = (Message("density {assumed}", {"assumed": text}) for text in density)
+    return (*texts, *body.assumed[len(density) :])
 
 
 def assumed_density(densities: Sequence[float], *, affects_rotations: bool = False) -> tuple[str, ...]:

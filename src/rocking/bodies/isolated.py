@@ -6,7 +6,7 @@ from typing import Any
 
 from rocking import checks, conventions
 from rocking.answers import Answer
-from rocking.bodies.body import Body, Side
+from rocking.bodies.body import Body, Side, assumed_with_mass
 from rocking.bodies.frame import refuse_frame
 from rocking.conventions import Foot
 from rocking.errors import InvalidValueError
@@ -75,13 +75,14 @@ class Isolated:
             frequency = 2.0 * math.pi / checks.positive("period", period, "s")
             total = body.mass + base_mass
             stiffness = total * frequency**2
-            damping = 2.0 * checks.within("damping_ratio", damping_ratio or 0.0, 0.0, 10.0) * frequency * total
+            ratio = 0.0 if damping_ratio is None else checks.within("damping_ratio", damping_ratio, 0.0, 1.0)
+            damping = 2.0 * ratio * frequency * total
         elif damping_ratio is not None:
             raise InvalidValueError("{parameter} needs a period", parameter="damping_ratio", value=damping_ratio)
         values = {
             "body": body, "base_mass": base_mass,
-            "stiffness": checks.within("stiffness", stiffness or 0.0, 0.0, 1e18, unit="N/m"),
-            "damping": checks.within("damping", damping or 0.0, 0.0, 1e18, unit="N s/m"),
+            "stiffness": checks.within("stiffness", 0.0 if stiffness is None else stiffness, 0.0, 1e18, unit="N/m"),
+            "damping": checks.within("damping", 0.0 if damping is None else damping, 0.0, 1e18, unit="N s/m"),
             "friction": checks.within("friction", friction, 0.0, 10.0),
         }  # fmt: skip
         for name, value in values.items():
@@ -105,7 +106,7 @@ class Isolated:
     @property
     def assumed(self) -> tuple[str, ...]:
         """Assumed values of the body, as texts."""
-        return self.body.assumed
+        return assumed_with_mass(self.body)
 
     @property
     def densities(self) -> tuple[float, ...]:

@@ -6,11 +6,10 @@ from typing import Any
 
 from rocking import checks, conventions
 from rocking.answers import Answer
-from rocking.bodies.body import Body, Side, assumed_density
+from rocking.bodies.body import Body, Side, assumed_with_mass
 from rocking.bodies.restraints import Restraint, Wall
 from rocking.conventions import Foot
 from rocking.errors import InvalidValueError
-from rocking.messages import Message
 
 
 @dataclass(frozen=True)
@@ -88,9 +87,7 @@ class Restrained:
     @property
     def assumed(self) -> tuple[str, ...]:
         """Assumed values of the body, as texts."""
-        density = assumed_density(self.densities, affects_rotations=True)
-        texts = (Message("density {assumed}", {"assumed": text}) for text in density)
-        return (*texts, *self.body.assumed[len(density) :])
+        return assumed_with_mass(self.body)
 
     @property
     def densities(self) -> tuple[float, ...]:

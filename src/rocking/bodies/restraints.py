@@ -16,6 +16,7 @@ COINCIDENT = 1e-9
 """Largest distance of coincident points / largest coordinate of the body [-]."""
 
 _EXACT = "exact change of the distance between two points; the force acts along the current line"
+_UNLIMITED = {"yield_force", "rupture_elongation", "stroke"}  # constants that are infinite without a limit
 _CONNECTION = ("x", "length", "ground", "point", "name")
 
 
@@ -88,7 +89,7 @@ class Restraint:
     def _check(self, low: float, unit: str, *names: str, open_low: bool = False) -> None:
         for name in names:
             value = getattr(self, name)
-            if value != math.inf:
+            if not (value == math.inf and name in _UNLIMITED):
                 self._set(name, checks.within(name, value, low, 1e30, unit=unit, open_low=open_low))
 
     @property

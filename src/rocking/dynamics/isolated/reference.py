@@ -204,7 +204,7 @@ class IsolatedReference:
             self.rate = 0.0
         else:
             self.side = side
-        ratio = self.rate / before[0]
+        ratio = self.rate / before[0] if before[0] else 0.0
         self.out.events.append(Event(self.now, EventKind.IMPACT, side, before[0], self.rate, ratio))
         self.out.base_velocities.append((before[1], self.v))
         self.lost += energy - self._kinetic(side)

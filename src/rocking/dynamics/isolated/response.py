@@ -283,6 +283,12 @@ class IsolatedResponse(ResponseBase):
         }  # fmt: skip
 
 
+def _may_overturn(trajectory: IsolatedTrajectory, parameters: RockingParameters) -> bool:
+    """Return True if the rotation at the end exceeds the slenderness angle or increases."""
+    rotation, rate = (float(trajectory.samples[name][-1]) for name in ("rotation", "angular_velocity"))
+    return rotation * rate > 0.0 or abs(rotation) > parameters.side(rotation).slenderness_angle
+
+
 def response_on_a_base(
     body: Isolated,
     motion: Motion | None,
@@ -308,8 +314,13 @@ def response_on_a_base(
     else:
         segments = motion.segments()
         segments = followed(segments, length, math.ceil(quick * segments.step / _FINE), motion)
-    engine = IsolatedReference(body, parameters, segments, settings, scale, checks.whole("stream", stream))
-    trajectory = engine.run(*start_within(parameters, *start))
+    inputs, state = (settings, scale, checks.whole("stream", stream)), start_within(parameters, *start)
+    trajectory = IsolatedReference(body, parameters, segments, *inputs).run(*state)
+    if trajectory.still_rocking and _may_overturn(trajectory, parameters):  # ground at rest, to determine the outcome
+        longer = IsolatedReference(body, parameters, segments.extended(length + _AFTER / slow), *inputs).run(*state)
+        if longer.outcome is Outcome.OVERTURNED:
+            trajectory.outcome, trajectory.side = longer.outcome, longer.side
+            trajectory.overturning_time = longer.overturning_time
     response = IsolatedResponse(body, motion, parameters, settings, segments, scale, trajectory)
     silent = errors.silenced(PureRockingWarning) or response.outcome is Outcome.FAILED
     for sentence in () if silent else response.doubts():

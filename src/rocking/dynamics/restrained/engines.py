@@ -85,7 +85,8 @@ def run(
     engine: str = "auto",
 ) -> RestrainedTrajectory:
     """Return one history from theta [rad] and theta' [rad/s]."""
-    check_path(body, *start)
+    rotation, velocity = start
+    check_path(body, rotation, 0.0 if rotation else velocity)
     devices = devices_of(body, linear=settings.linear)
     if chosen(engine, parameters.law) == "reference":
         reference = RestrainedReference(parameters, body.mass, devices, segments, settings, scale, stream)
