@@ -234,6 +234,21 @@ class PlaneMechanics(Mechanics):
         return Start
 
 
+class RockingMechanics(PlaneMechanics):
+    """Mechanics of plane bodies that only rock: the start is a rotation and an angular velocity."""
+
+    def start_of(self, rotation: Any, angular_velocity: Any) -> Any:
+        """Return rotation and angular velocity; their limits depend on the body and are checked later."""
+        return rotation, angular_velocity
+
+    def begun(self, start: Any, rotation: Any, angular_velocity: Any) -> Any:
+        """Return rotation and angular velocity at the start. Raise an error for a start above the ground."""
+        from rocking.dynamics.plane_frictional.base import rocking_start
+
+        begun = super().begun(start, rotation, angular_velocity)
+        return begun if start is None else rocking_start(begun)
+
+
 class SpatialMechanics(Mechanics):
     """Mechanics of 3D bodies, with starts of class `SpatialStart`."""
 

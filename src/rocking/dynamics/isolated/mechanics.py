@@ -5,11 +5,11 @@ from typing import Any, NoReturn
 
 from rocking.bodies.isolated import Isolated
 from rocking.dynamics.isolated.settings import IsolatedSettings
-from rocking.dynamics.mechanics_base import Combinations, PlaneMechanics
+from rocking.dynamics.mechanics_base import Combinations, RockingMechanics
 from rocking.errors import InvalidValueError
 
 
-class IsolatedRocking(PlaneMechanics):
+class IsolatedRocking(RockingMechanics):
     """Rocking of a plane body on a base that moves horizontally."""
 
     name, title, subject = "isolated", "rocking on an isolated base", "a body on an isolated base"
@@ -18,15 +18,6 @@ class IsolatedRocking(PlaneMechanics):
 
     def takes(self, body: Any, friction: Any, *, study: bool = False) -> bool:
         return isinstance(body, Isolated)
-
-    def start_of(self, rotation: Any, angular_velocity: Any) -> Any:
-        return rotation, angular_velocity  # their limits depend on the body and are checked later
-
-    def begun(self, start: Any, rotation: Any, angular_velocity: Any) -> Any:
-        from rocking.dynamics.plane_frictional.base import rocking_start
-
-        begun = super().begun(start, rotation, angular_velocity)
-        return begun if start is None else rocking_start(begun)
 
     def follow(
         self, body: Any, motion: Any, restitution: Any, settings: IsolatedSettings, *, start: Any, **options: Any

@@ -7,12 +7,12 @@ import numpy as np
 
 from rocking import errors
 from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw, RandomRestitution, SpeedRestitution
-from rocking.dynamics.mechanics_base import Combinations, PlaneMechanics, Sample, in_space
+from rocking.dynamics.mechanics_base import Combinations, RockingMechanics, Sample, in_space
 from rocking.dynamics.plane.settings import PlaneSettings
 from rocking.errors import PureRockingWarning
 
 
-class PlaneRocking(PlaneMechanics):
+class PlaneRocking(RockingMechanics):
     """Pure rocking of a plane body."""
 
     name, title, subject = "plane", "pure rocking", "a plane body without friction"
@@ -22,15 +22,6 @@ class PlaneRocking(PlaneMechanics):
 
     def takes(self, body: Any, friction: Any, *, study: bool = False) -> bool:
         return friction is None and not in_space(body)
-
-    def start_of(self, rotation: Any, angular_velocity: Any) -> Any:
-        return rotation, angular_velocity  # their limits depend on the body and are checked later
-
-    def begun(self, start: Any, rotation: Any, angular_velocity: Any) -> Any:
-        from rocking.dynamics.plane_frictional.base import rocking_start
-
-        begun = super().begun(start, rotation, angular_velocity)
-        return begun if start is None else rocking_start(begun)
 
     def follow(
         self, body: Any, motion: Any, restitution: Any, settings: PlaneSettings, *, start: Any, **options: Any

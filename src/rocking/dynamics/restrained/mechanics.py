@@ -7,14 +7,14 @@ from typing import Any
 from rocking.bodies.restrained import Restrained, without_walls
 from rocking.conventions import FloatArray
 from rocking.dynamics.impact_laws import ImpactLaw
-from rocking.dynamics.mechanics_base import Combinations, PlaneMechanics
+from rocking.dynamics.mechanics_base import Combinations, RockingMechanics
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.restrained.settings import RestrainedSettings, RestrainedStudySettings
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 
 
-class RestrainedRocking(PlaneMechanics):
+class RestrainedRocking(RockingMechanics):
     """Rocking of a plane body with restraints."""
 
     name, title, subject = "restrained", "rocking with restraints", "a body with restraints"
@@ -24,15 +24,6 @@ class RestrainedRocking(PlaneMechanics):
 
     def takes(self, body: Any, friction: Any, *, study: bool = False) -> bool:
         return isinstance(body, Restrained)
-
-    def start_of(self, rotation: Any, angular_velocity: Any) -> Any:
-        return rotation, angular_velocity  # their limits depend on the body and are checked later
-
-    def begun(self, start: Any, rotation: Any, angular_velocity: Any) -> Any:
-        from rocking.dynamics.plane_frictional.base import rocking_start
-
-        begun = super().begun(start, rotation, angular_velocity)
-        return begun if start is None else rocking_start(begun)
 
     def follow(
         self, body: Any, motion: Any, restitution: Any, settings: RestrainedSettings, *, start: Any, **options: Any

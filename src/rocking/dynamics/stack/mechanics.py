@@ -4,13 +4,13 @@ from collections.abc import Mapping
 from typing import Any
 
 from rocking.bodies.stack import Stack
-from rocking.dynamics.mechanics_base import Combinations, PlaneMechanics
+from rocking.dynamics.mechanics_base import Combinations, RockingMechanics
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.stack.settings import StackSettings
 from rocking.errors import InvalidValueError
 
 
-class StackRocking(PlaneMechanics):
+class StackRocking(RockingMechanics):
     """Rocking of plane bodies on each other."""
 
     name, title, subject = "stack", "rocking of a stack", "a stack"
@@ -20,15 +20,6 @@ class StackRocking(PlaneMechanics):
 
     def takes(self, body: Any, friction: Any, *, study: bool = False) -> bool:
         return isinstance(body, Stack)
-
-    def start_of(self, rotation: Any, angular_velocity: Any) -> Any:
-        return rotation, angular_velocity  # one value, or one value per body; checked later
-
-    def begun(self, start: Any, rotation: Any, angular_velocity: Any) -> Any:
-        from rocking.dynamics.plane_frictional.base import rocking_start
-
-        begun = super().begun(start, rotation, angular_velocity)
-        return begun if start is None else rocking_start(begun)
 
     def follow(
         self, body: Any, motion: Any, restitution: Any, settings: StackSettings, *, start: Any, **options: Any
