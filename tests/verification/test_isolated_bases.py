@@ -381,3 +381,5 @@ def test_an_assumed_density_affects_rotations():
     assert any("it affects rotations" in text for text in free.assumed)
     stated = rk.Isolated(rk.Block(width=0.5, height=2.0, mass=1e3), base_mass=1e3, stiffness=1e5)
     assert not any("density" in text for text in stated.assumed)
+    mixed = rk.Stack([rk.Block(width=0.5, height=1.0), rk.Block(width=0.4, height=1.0, mass=500.0)])
+    assert any("1 of 2 parts" in text and "rotations" in text for text in mixed.assumed)

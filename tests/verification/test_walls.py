@@ -388,3 +388,42 @@ def test_a_body_away_from_a_rigid_wall_may_fall_back():
     assert response.rotation[-1] == 0.0
     with pytest.raises(rk.errors.InvalidValueError, match="rigid"):
         rk.free_rocking(adjacent, rotation=0.0, angular_velocity=-0.2, restitution=0.9)
+
+
+TRAPEZOID = rk.Section([rk.Region([(0.0, 0.0), (1.0, 0.0), (0.8, 3.0), (0.2, 3.0)], 2000.0)])
+
+
+@pytest.mark.verifies("behaviour")
+def test_walls_touch_points_of_the_body():
+    """The default point of a wall is on the outline at its height; a rigid wall needs a vertical face."""
+    wall = rk.Restrained(TRAPEZOID, rk.Wall(side="left", height=1.5, stiffness=1e5)).restraints[0]
+    assert wall.ends[1] == pytest.approx((0.1, 1.5), abs=1e-12)
+    right = rk.Restrained(TRAPEZOID, rk.Wall(side="right", stiffness=1e5)).restraints[0]
+    assert right.ends[1] == pytest.approx((0.8, 3.0), abs=1e-12)
+    step = rk.Section([rk.Region([(0.0, 0.0), (1.0, 0.0), (1.0, 2.0), (0.6, 2.0), (0.6, 3.0), (0.0, 3.0)], 2000.0)])
+    assert rk.Restrained(step, rk.Wall(side="left", law="plastic")).restraints[0].ends[1] == (0.0, 3.0)
+
+
+@pytest.mark.verifies("damage")
+@pytest.mark.parametrize(
+    ("body", "values", "name"),
+    [
+        (TRAPEZOID, {"law": "plastic"}, "vertical face"), (TRAPEZOID, {"height": 10.0, "stiffness": 1e5}, "height"),
+        (TRAPEZOID, {"x": 50.0, "stiffness": 1e5}, "x"),
+        (rk.Block(width=1.0, height=4.0), {"x": 0.5, "law": "plastic"}, "vertical face"),
+    ],
+)  # fmt: skip
+def test_points_that_are_not_on_the_body_are_refused(body, values, name):
+    """A wall acts on no point outside the body."""
+    with pytest.raises(rk.errors.InvalidValueError, match=name):
+        rk.Restrained(body, rk.Wall(side="left", **values))
+
+
+@pytest.mark.verifies("damage")
+@pytest.mark.parametrize("value", [5, None, "tendon"])
+def test_restraints_and_columns_are_lists(value):
+    """No type of Python is an error without a sentence."""
+    with pytest.raises(rk.errors.InvalidValueError, match="restraints"):
+        rk.Restrained(rk.Block(width=1.0, height=4.0), value)
+    with pytest.raises(rk.errors.InvalidValueError, match="columns"):
+        rk.Frame(value, beam_mass=100.0)

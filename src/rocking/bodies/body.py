@@ -373,7 +373,8 @@ def feet_of(feet: Any) -> Interval:
 
 def assumed_rows(body: Any) -> list[tuple[str, str]]:
     """Return the assumptions about a body as rows (label, text) of a table."""
-    density = assumed_density(body.densities, affects_rotations=hasattr(body, "restraints"))
+    affects_rotations = hasattr(body, "restraints") or hasattr(body, "base_mass")
+    density = assumed_density(body.densities, affects_rotations=affects_rotations)
     return [*(("density", text) for text in density), *(("assumed", text) for text in body.assumed[len(density) :])]
 
 
@@ -402,11 +403,13 @@ _ASSUMED_WITH_RESTRAINTS = {
 }  # fmt: skip
 
 
-def assumed_with_mass(body: Body) -> tuple[str, ...]:
-    """Return the assumed values of a body whose mass affects the rotations, as texts."""
-    density = assumed_density(body.densities, affects_rotations=True)
-    texts = (Message("density {assumed}", {"assumed": text}) for text in density)
-    return (*texts, *body.assumed[len(density) :])
+def assumed_together(bodies: Sequence[Body], *, affects_rotations: bool = False) -> tuple[str, ...]:
+    """Return the assumed values of bodies that move together, as texts. A body without densities has a stated mass."""
+    densities = [density for body in bodies for density in body.densities or (math.nan,)]
+    density = assumed_density(densities, affects_rotations=affects_rotations)
+    texts = [Message("density {assumed}", {"assumed": text}) for text in density]
+    others = [text for body in bodies for text in body.assumed[len(assumed_density(body.densities)) :]]
+    return tuple(dict.fromkeys([*texts, *others]))
 
 
 def assumed_density(densities: Sequence[float], *, affects_rotations: bool = False) -> tuple[str, ...]:

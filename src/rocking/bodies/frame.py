@@ -77,6 +77,7 @@ class Frame(Body):
     def __init__(
         self, columns: Sequence[Body], beam_mass: float, *, beam_on: Literal["corner", "hinge"] = "corner"
     ) -> None:
+        checks.of_kind("columns", columns, Sequence, "a list of columns")
         listed = [*columns]
         if not listed:
             raise InvalidValueError(parameter="columns", allowed="one or more columns", value=columns)

@@ -6,7 +6,7 @@ from typing import Any
 
 from rocking import checks, conventions
 from rocking.answers import Answer
-from rocking.bodies.body import Body, Side, assumed_with_mass
+from rocking.bodies.body import Body, Side, assumed_together
 from rocking.bodies.frame import refuse_frame
 from rocking.conventions import Foot
 from rocking.errors import InvalidValueError
@@ -106,7 +106,7 @@ class Isolated:
     @property
     def assumed(self) -> tuple[str, ...]:
         """Assumed values of the body, as texts."""
-        return assumed_with_mass(self.body)
+        return assumed_together([self.body], affects_rotations=True)
 
     @property
     def densities(self) -> tuple[float, ...]:

@@ -6,7 +6,7 @@ from typing import Any
 
 from rocking import checks, conventions
 from rocking.answers import Answer
-from rocking.bodies.body import Body, Side, assumed_with_mass
+from rocking.bodies.body import Body, Side, assumed_together
 from rocking.bodies.restraints import Restraint, Wall
 from rocking.conventions import Foot
 from rocking.errors import InvalidValueError
@@ -56,9 +56,10 @@ class Restrained:
         self, body: Body, restraints: Sequence[Restraint] | Restraint = (), *, floor_slope: float = 0.0
     ) -> None:
         checks.of_kind("body", body, Body, "a Block, Section or MassPoints")
+        allowed = "Tendon, ViscousDamper, FrictionDamper, Fuse, Spring or Wall"
+        checks.of_kind("restraints", restraints, (Restraint, Sequence), allowed)
         listed = [restraints] if isinstance(restraints, Restraint) else list(restraints)
         for restraint in listed:
-            allowed = "Tendon, ViscousDamper, FrictionDamper, Fuse, Spring or Wall"
             checks.of_kind("restraints", restraint, Restraint, allowed)
         right, left = (body.side(foot).slenderness_angle for foot in ("right", "left"))
         slope = checks.within(
@@ -87,7 +88,7 @@ class Restrained:
     @property
     def assumed(self) -> tuple[str, ...]:
         """Assumed values of the body, as texts."""
-        return assumed_with_mass(self.body)
+        return assumed_together([self.body], affects_rotations=True)
 
     @property
     def densities(self) -> tuple[float, ...]:

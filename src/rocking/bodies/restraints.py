@@ -5,9 +5,12 @@ import math
 from dataclasses import dataclass, fields, replace
 from typing import Any, ClassVar
 
+import numpy as np
+
 from rocking import checks
 from rocking.bodies.body import Body
 from rocking.bodies.frame import Frame
+from rocking.bodies.section import Section
 from rocking.conventions import FEET
 from rocking.errors import InvalidValueError
 
@@ -416,16 +419,16 @@ class Wall(Restraint):
 
     A rigid wall touches the upright body from the floor to the point. The body rocks only away from this wall, and hits
     floor and wall together. With ``law="plastic"`` the body stops: this is the only solution without rebound and
-    without tensile forces. With
-    ``law="sorrentino"`` the body rebounds about the same foot. This law is empirical: it needs friction between body
-    and wall, and a floor that pulls the body.
+    without tensile forces. With ``law="sorrentino"`` the body rebounds about the same foot. This law is empirical: it
+    needs friction between body and wall, and a floor that pulls the body.
 
     Parameters
     ----------
     x : float, optional
-        Position of the point, as for the feet; the default is the end of the body on the side of the wall [m].
-    length, ground, point, name
-        Name, as for `Restraint`. The other parameters do not apply to a wall.
+        Position of the point, as for the feet; the default is the end of the body at the height, on the side of the
+        wall [m].
+    name : str
+        Name in results, as for `Restraint`. A wall has no `length`, `ground` and `point`.
     side : {"left", "right"}
         Side of the body on which the wall is.
     gap : float
@@ -524,11 +527,27 @@ class Wall(Restraint):
         InvalidValueError
             If the law is not for this body, as in `rebound`.
         """
-        x_left, _, x_right, top = body.local_box
-        x = body.origin_x + (x_left if self.side == "left" else x_right)
-        height = top if self.height is None else self.height
+        top = body.local_box[3]
+        height = top if self.height is None else checks.within("height", self.height, 0.0, top, unit="m", open_low=True)
+        left, right = (body.origin_x + end for end in ends_at(body, height))
+        face = left if self.side == "left" else right
+        x = face if self.x is None else checks.within("x", self.x, left, right, unit="m")
+        if self.law != "compliant":
+            self._check_face(body, x, height)
         self.rebound(body)
-        return replace(self, x=x if self.x is None else self.x, height=height)
+        return replace(self, x=x, height=height)
+
+    def _check_face(self, body: Body, x: float, height: float) -> None:
+        """Raise an error if the face of the body is not vertical from the foot to the point."""
+        levels = np.unique([0.0, height, *levels_of(body)])
+        levels = levels[levels <= height]
+        between = 0.5 * (levels[:-1] + levels[1:])
+        faces = [ends_at(body, float(level))[self.side == "right"] for level in (*levels, *between)]
+        if np.ptp([*faces, x - body.origin_x]) > COINCIDENT * body.local_box[3]:
+            raise InvalidValueError(
+                "a rigid wall needs a vertical face of the body from the floor to the point", parameter="law",
+                value=self.law, hint="use a compliant wall",
+            )  # fmt: skip
 
     def rebound(self, body: Body) -> float | None:
         """Return the ratio of the angular velocities after and before an impact at a rigid wall [-].
@@ -575,6 +594,31 @@ class Wall(Restraint):
             )
         sine, cosine = math.sin(left.slenderness_angle), math.cos(left.slenderness_angle)
         return (1.0 - 1.5 * sine**2) ** 2 * (1.0 - 1.5 * cosine**2)  # Eq. 367
+
+
+def ends_at(body: Body, height: float) -> tuple[float, float]:
+    """Return the left and the right end of a body at a height above the ground, in the local frame [m].
+
+    Blocks, frames and mass points have the ends of their bounding box.
+    """
+    left, _, right, _ = body.local_box
+    if not isinstance(body, Section):
+        return left, right
+    crossings: list[float] = []
+    for region in body.regions:
+        start, end = region.outline, np.roll(region.outline, -1, axis=0)
+        low, high = np.minimum(start[:, 1], end[:, 1]), np.maximum(start[:, 1], end[:, 1])
+        crosses = (low <= height) & (height <= high)
+        rise = np.where(crosses & (high > low), end[:, 1] - start[:, 1], 1.0)
+        at = start[:, 0] + (height - start[:, 1]) / rise * (end[:, 0] - start[:, 0])
+        level = crosses & (high == low)
+        crossings += [*at[crosses & ~level].tolist(), *start[level, 0].tolist(), *end[level, 0].tolist()]
+    return min(crossings, default=left), max(crossings, default=right)
+
+
+def levels_of(body: Body) -> list[float]:
+    """Return the heights of the vertices of a section above the ground [m]; empty for other bodies."""
+    return [z for region in body.regions for z in region.outline[:, 1].tolist()] if isinstance(body, Section) else []
 
 
 KINDS: dict[str, type[Restraint]] = {

@@ -11,7 +11,7 @@ import numpy as np
 from rocking import checks, conventions
 from rocking.answers import Answer
 from rocking.bodies.block import Block
-from rocking.bodies.body import Body, Side
+from rocking.bodies.body import Body, Side, assumed_together
 from rocking.bodies.isolated import Isolated
 from rocking.bodies.mass_points import MassPoints
 from rocking.bodies.restrained import Restrained
@@ -170,7 +170,7 @@ class Stack:
     @property
     def assumed(self) -> tuple[str, ...]:
         """Assumed values of the bodies, as texts."""
-        return tuple(dict.fromkeys(text for body in self.bodies for text in body.assumed))
+        return assumed_together(self.bodies)
 
     def side(self, foot: Foot, gravity: float = conventions.g) -> Side:
         """Return the parameters of the stack as one body for rotation about one foot.

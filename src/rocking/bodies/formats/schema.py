@@ -225,7 +225,7 @@ class IsolatorTable(StrictTable):
 
     base_mass: Positive = Field(description="mass of the base [kg]")
     period: Positive | None = key("period of body and base on the springs, without rocking [s]", usual="no springs")
-    damping_ratio: Annotated[float, Field(ge=0.0, le=10.0)] | None = key(
+    damping_ratio: Annotated[float, Field(ge=0.0, le=1.0)] | None = key(
         "damping ratio of body and base, with period [-]", usual="0"
     )
     stiffness: Cut | None = key("horizontal stiffness of the isolators, instead of period [N/m]", usual="0")

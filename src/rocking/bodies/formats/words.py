@@ -43,11 +43,14 @@ _TEXTS = {
 }
 _UNITS = {
     **dict.fromkeys(("density", "layers"), "kg/m3"),
-    **dict.fromkeys(("mass", "masses"), "kg"),
+    **dict.fromkeys(("mass", "masses", "base_mass", "beam_mass"), "kg"),
     **dict.fromkeys(("moment_of_inertia", "inertia"), "kg m2"),
-    **dict.fromkeys(("sides", "axis", "loss", "hardening", "exponent"), ""),
+    **dict.fromkeys(("sides", "axis", "loss", "hardening", "exponent", "columns", "friction", "damping_ratio"), ""),
     **dict.fromkeys(("prestress", "yield_force", "slip_force"), "N"),
     "stiffness": "N/m",
+    "damping": "N s/m",
+    "period": "s",
+    "floor_slope": "rad",
     "area": "m2",
     "modulus": "Pa",
     "coefficient": "N (s/m)^a",
