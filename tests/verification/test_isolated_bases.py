@@ -383,3 +383,17 @@ def test_an_assumed_density_affects_rotations():
     assert not any("density" in text for text in stated.assumed)
     mixed = rk.Stack([rk.Block(width=0.5, height=1.0), rk.Block(width=0.4, height=1.0, mass=500.0)])
     assert any("1 of 2 parts" in text and "rotations" in text for text in mixed.assumed)
+
+
+@pytest.mark.verifies("behaviour")
+@pytest.mark.filterwarnings("ignore::rocking.errors.PureRockingWarning")
+def test_a_base_that_the_ground_would_have_to_pull_is_doubted():
+    """The vertical acceleration -15 m/s2 leaves (15 - g) / g of the weight of a heavy base as tension."""
+    time = np.arange(0.0, 1.0, 0.01)
+    push = np.where(time < 0.4, 3.0 * np.sin(5.0 * np.pi * time), 0.0)
+    base = rk.Isolated(BLOCK, base_mass=50e3, friction=1.0)
+    for down, is_doubted in ((-15.0, True), (-5.0, False)):
+        motion = rk.GroundMotion(push, 0.01, vertical=np.where((time > 0.05) & (time < 0.3), down, 0.0))
+        response = rk.simulate(base, motion, "housner", gravity=G, duration=0.5)
+        assert any("force of the ground on the base" in doubt for doubt in response.doubts()) is is_doubted
+    assert response.trajectory.least_base_force == pytest.approx(1.0 - 5.0 / G, rel=0.02)  # 2 %: motion of the block

@@ -35,7 +35,8 @@ class IsolatedTrajectory:
     status: Status = Status.GOOD
     side: int = 0  # side of overturning
     overturning_time: float = math.nan  # [s]
-    least_force: float = math.inf  # smallest normal force on the body at the samples, over its weight [-]
+    least_force: float = math.inf  # smallest normal force on the body at the samples / its weight [-]
+    least_base_force: float = math.inf  # smallest normal force on the base at the samples / weight of both [-]
     engine: str = f"reference (Taylor, order {IsolatedSeries.order})"
 
     @property
@@ -113,8 +114,10 @@ class IsolatedReference:
         self.theta, self.rate = value(terms.theta, x), slope(terms.theta, x) / terms.duration
         self.u, self.v = value(terms.u, x), slope(terms.u, x) / terms.duration
         self.acceleration = value(terms.acceleration, x)
+        below, total = value(terms.normal_force, x), self.body.mass + self.body.base_mass
+        self.out.least_base_force = min(self.out.least_base_force, below / (total * self.settings.gravity))
         if self.side:
-            force = value(terms.normal_force, x) - self.body.base_mass * value(terms.weight, x)
+            force = below - self.body.base_mass * value(terms.weight, x)
             self.out.least_force = min(self.out.least_force, force / (self.body.mass * self.settings.gravity))
         self.tau += x * terms.duration / self.step
         if self.tau >= 1.0 - 1e-13:

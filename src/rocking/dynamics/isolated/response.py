@@ -31,6 +31,10 @@ if TYPE_CHECKING:
 _FINE, _AFTER, _FREE = 0.05, 15.0, 100.0  # products of p with time step and durations
 _SIDES = {1: "right", -1: "left"}
 _TENSILE = "the contact force becomes tensile, up to {force:.2g} of the weight: the body would leave the base"
+_TENSILE_BELOW = (
+    "the force of the ground on the base becomes tensile, up to {force:.2g} of the weight of body and base: the base "
+    "would leave the ground, and friction and later results do not hold"
+)
 IMPACT = np.dtype([
     ("time", "f8"), ("velocity_before", "f8"), ("velocity_after", "f8"), ("coefficient", "f8"), ("foot", "U5"),
     ("base_velocity_before", "f8"), ("base_velocity_after", "f8"),
@@ -189,7 +193,8 @@ class IsolatedResponse(ResponseBase):
         list of str
             Sentences; empty if the model is credible.
         """
-        return [Message(_TENSILE, {"force": -self.least_force})] if self.lost_contact else []
+        forces = {_TENSILE: self.least_force, _TENSILE_BELOW: self.trajectory.least_base_force}
+        return [Message(text, {"force": -force}) for text, force in forces.items() if force < 0.0]
 
     def answer(self) -> Answer:
         """Return outcome, peaks of body and base, energy, impacts, and warnings.
