@@ -427,8 +427,10 @@ class Wall(Restraint):
     x : float, optional
         Position of the point, as for the feet; the default is the end of the body at the height, on the side of the
         wall [m].
+    length, ground, point
+        Parameters of other restraints, which do not apply to a wall.
     name : str
-        Name in results, as for `Restraint`. A wall has no `length`, `ground` and `point`.
+        Name in results, as for `Restraint`.
     side : {"left", "right"}
         Side of the body on which the wall is.
     gap : float

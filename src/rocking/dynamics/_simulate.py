@@ -154,7 +154,8 @@ def simulate(
         the body still rocks, the response is extended, up to 300 / p (300 sqrt(R / g)) after the ground motion, except
         for a body without energy loss at impacts. The summary includes a motion that continues at the end. With
         friction, a rotation beyond the slenderness angle extends the response until the outcome is known. The response
-        of a 3D body with friction is extended until the body rests.
+        of a 3D body with friction is extended until the body rests. A response on an isolated base is not extended; the
+        outcome includes later overturning.
     stream : int
         Number of the history, for random coefficients.
     scale : float
@@ -242,7 +243,7 @@ def free_rocking(
         As for `simulate` [-].
     **options
         Other options of `simulate`, without scale. By default, the response ends when the body rests or has overturned,
-        and after 300 / p at most (with friction after 60 sqrt(R / g)).
+        and after 300 / p at most (with friction after 60 sqrt(R / g), on an isolated base after 100 / p).
 
     Returns
     -------
